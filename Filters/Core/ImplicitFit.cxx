@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImplicitFit.h"
+
+#include "Parallel.h"
+
+namespace ipia
+{
+namespace
+{
+template <int Dim>
+ConstraintRows<Dim> makeRows(const Lattice<Dim>& lattice, const FitInput<Dim>& input)
+{
+  const std::int64_t n = input.Positions.cols();
+  const std::int64_t most = n * (input.InwardDistance.size() ? 3 : 2) + input.ExtraPositions.cols();
+  Points<Dim> positions(Dim, most);
+  Vector targets(most), weights(most);
+  std::int64_t used = 0;
+  const auto append = [&](const Point<Dim>& position, double target, double weight)
+  {
+    positions.col(used) = position;
+    targets[used] = target;
+    weights[used] = weight;
+    ++used;
+  };
+  const auto weightOf = [&](std::int64_t k) { return input.Weights.size() ? input.Weights[k] : 1.0; };
+  const auto appendOffsets = [&](const Vector& distance, double value, double side)
+  {
+    for (std::int64_t k = 0; k < distance.size(); ++k)
+    {
+      const Point<Dim> position =
+        input.Positions.col(k) + side * distance[k] * input.Normals.col(k);
+      if (distance[k] > 0 && !input.Normals.col(k).isZero(0) && lattice.contains(position))
+      {
+        append(position, side * (value > 0 ? value : distance[k]), weightOf(k));
+      }
+    }
+  };
+  for (std::int64_t k = 0; k < n; ++k)
+  {
+    append(input.Positions.col(k), 0, weightOf(k));
+  }
+  appendOffsets(input.OutwardDistance, input.OutwardValue, 1);
+  appendOffsets(input.InwardDistance, input.InwardValue, -1);
+  for (std::int64_t k = 0; k < input.ExtraPositions.cols(); ++k)
+  {
+    append(input.ExtraPositions.col(k), input.ExtraValues[k], 1);
+  }
+  return ConstraintRows<Dim>(
+    lattice, positions.leftCols(used), targets.head(used), weights.head(used));
+}
+
+template <int Dim>
+Vector valuesAt(const ImplicitSpline<Dim>& function, const Points<Dim>& positions, int threads)
+{
+  Vector values(positions.cols());
+  parallelChunks(positions.cols(), resolveThreads(threads),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        values[k] = function.value(positions.col(k));
+      }
+    });
+  return values;
+}
+}
+
+template <int Dim>
+double oscillation(const Lattice<Dim>& lattice, const Vector& coefficients)
+{
+  double sum = 0;
+  std::int64_t stride = 1;
+  for (int a = 0; a < Dim; ++a)
+  {
+    for (std::int64_t i = 0; i + stride < coefficients.size(); ++i)
+    {
+      if (i / stride % lattice.Size[a] + 1 < lattice.Size[a])
+      {
+        const double difference = coefficients[i + stride] - coefficients[i];
+        sum += 2 * difference * difference;
+      }
+    }
+    stride *= lattice.Size[a];
+  }
+  return sum;
+}
+
+template <int Dim>
+FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
+  const FitOptions& options, const ProgressCallback& progress)
+{
+  const ConstraintRows<Dim> rows = makeRows(lattice, input);
+  const CollocationOperator<Dim> collocation(rows, options.Threads);
+
+  Vector coefficients = Vector::Zero(lattice.numberOfCoefficients());
+  const SolverResult solved =
+    solveLeastSquares(collocation, options.Solver, coefficients, progress);
+
+  Vector support;
+  collocation.support(support);
+  const double typical =
+    medianSupport(lattice, support, input.Positions, resolveThreads(options.Threads));
+  if (typical > 0)
+  {
+    support /= typical;
+  }
+  FarFieldOptions farOptions = options.FarField;
+  farOptions.Threads = options.Threads;
+  FarField far;
+  if (farOptions.Threshold > 0 && solved.Status == SolverStatus::Done)
+  {
+    far = computeFarField(lattice, support, coefficients, farOptions);
+  }
+
+  FitResult<Dim> result{ ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)),
+    solved, std::move(support), 0, 0, 0 };
+  const Vector atPoints = valuesAt(result.Function, input.Positions, options.Threads);
+  if (atPoints.size())
+  {
+    result.AverageError = atPoints.squaredNorm() / static_cast<double>(atPoints.size());
+    result.MaximumError = atPoints.cwiseAbs().maxCoeff();
+  }
+  result.Oscillation = oscillation(lattice, result.Function.coefficients());
+  return result;
+}
+
+template struct FitResult<2>;
+template struct FitResult<3>;
+template double oscillation<2>(const Lattice<2>&, const Vector&);
+template double oscillation<3>(const Lattice<3>&, const Vector&);
+template FitResult<2> fitImplicit<2>(
+  const Lattice<2>&, const FitInput<2>&, const FitOptions&, const ProgressCallback&);
+template FitResult<3> fitImplicit<3>(
+  const Lattice<3>&, const FitInput<3>&, const FitOptions&, const ProgressCallback&);
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The fitted function: evaluation anywhere, sampling on grids.
+ */
+#ifndef ipia_ImplicitSpline_h
+#define ipia_ImplicitSpline_h
+
+#include "FarField.h"
+#include "Lattice.h"
+
+#include <vector>
+
+namespace ipia
+{
+/// Sample positions per axis, relative to the lower corner of the domain, ascending.
+template <int Dim>
+using AxisPositions = std::array<std::vector<double>, Dim>;
+
+/**
+ * f(x) = sum_i c_i B_i(x) on the domain, the constant of the far field in its cells, and beyond the
+ * domain a continuation that keeps the sign: f at the nearest point of the domain, moved away from 0
+ * by the distance to it.
+ */
+template <int Dim>
+class ImplicitSpline
+{
+public:
+  ImplicitSpline(const Lattice<Dim>& lattice, Vector coefficients, FarField farField = {});
+
+  const Lattice<Dim>& lattice() const { return this->ControlLattice; }
+  const Vector& coefficients() const { return this->Coefficients; }
+  const FarField& farField() const { return this->Far; }
+
+  double value(const Point<Dim>& position) const;
+
+  /// The exact gradient; 0 in the cells of the far field.
+  Point<Dim> gradient(const Point<Dim>& position) const;
+
+  /**
+   * f on a grid inside the domain, x fastest.
+   *
+   * The tensor-product sum is taken one axis at a time, so that a sample costs about seven
+   * multiply-adds; the result equals value() up to rounding.
+   *
+   * @param values          room for the product of the numbers of positions
+   * @param derivativeAxis  -1: f; else the partial derivative along that axis
+   * @return false if the callback aborted
+   */
+  template <typename Scalar>
+  bool sample(const AxisPositions<Dim>& positions, Scalar* values, int threads = 0,
+    int derivativeAxis = -1, const ProgressCallback& progress = {}) const;
+
+private:
+  struct Nearest; // the nearest point of the domain and how far it is
+
+  double splineSum(const std::array<AxisLocation, Dim>& at, int derivativeAxis) const;
+
+  Lattice<Dim> ControlLattice;
+  Vector Coefficients;
+  FarField Far;
+};
+}
+
+#endif

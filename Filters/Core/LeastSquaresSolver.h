@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The two solvers of min_c sum_k w_k (b_k - (Bc)_k)^2.
+ *
+ * Both start from the given coefficients c0 and stay in c0 + range(B^T), hence share their limit: the
+ * least-squares solution nearest to c0, which for c0 = 0 is the one of least norm, (B^T W B)^+ B^T W b.
+ */
+#ifndef ipia_LeastSquaresSolver_h
+#define ipia_LeastSquaresSolver_h
+
+#include "CollocationOperator.h"
+
+#include <vector>
+
+namespace ipia
+{
+enum class SolverType
+{
+  /// C <- C + mu B^T W (b - B C), eq. 11 and 16 of Hamza, Lin, Li (2019).
+  ProgressiveIteration,
+  /// Conjugate gradient on the normal equations; about the same cost per iteration.
+  ConjugateGradient
+};
+
+enum class StoppingRule
+{
+  RelativeResidual, ///< ||B^T W r|| / ||B^T W r0|| < Tolerance
+  EnergyChange      ///< |E_new - E_old| < Tolerance
+};
+
+struct SolverOptions
+{
+  SolverType Type = SolverType::ProgressiveIteration;
+  int MaximumNumberOfIterations = 100;
+  double Tolerance = 0; ///< 0: all iterations are done
+  StoppingRule Rule = StoppingRule::RelativeResidual;
+  double StepSize = 0; ///< mu; 0: 2 / max_i sum_k w_k B_i(x_k), which always converges
+};
+
+enum class SolverStatus
+{
+  Done,
+  Aborted, ///< the callback returned false; the coefficients are those of the last iteration
+  Diverged ///< the energy rose: StepSize is above 2 / lambda_max(B^T W B)
+};
+
+struct SolverResult
+{
+  SolverStatus Status = SolverStatus::Done;
+  int NumberOfIterations = 0;
+  double StepSize = 0; ///< mu; 0 with ConjugateGradient
+  double Energy = 0;   ///< sum_k w_k r_k^2 of the returned coefficients
+  /// ||B^T W r|| / ||B^T W r0|| before the first and after each iteration.
+  std::vector<double> ResidualHistory;
+};
+
+/// Improves @a coefficients in place; the callback is asked once per iteration.
+template <int Dim>
+SolverResult solveLeastSquares(const CollocationOperator<Dim>& collocation,
+  const SolverOptions& options, Vector& coefficients, const ProgressCallback& progress = {});
+}
+
+#endif

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Where a fit lies in space, and a fit as a vtkImageData.
+ */
+#ifndef IPIAControlLattice_h
+#define IPIAControlLattice_h
+
+#include "Core/ImplicitSpline.h"
+
+#include "vtkImageData.h"
+
+#include <memory>
+#include <string>
+
+namespace ipia
+{
+/// The axes of space that the Dim axes of a fit lie along, and the lower corner of its domain. In 2-D
+/// the origin's coordinate on the third axis is that of the plane.
+template <int Dim>
+struct Placement
+{
+  std::array<int, Dim> Axis{};
+  std::array<double, 3> Origin{};
+
+  Point<Dim> toLocal(const double x[3]) const
+  {
+    Point<Dim> p;
+    for (int a = 0; a < Dim; ++a)
+    {
+      const auto axis = static_cast<std::size_t>(this->Axis[a]);
+      p[a] = x[axis] - this->Origin[axis];
+    }
+    return p;
+  }
+
+  void toWorldVector(const Point<Dim>& v, double g[3]) const
+  {
+    g[0] = g[1] = g[2] = 0;
+    for (int a = 0; a < Dim; ++a)
+    {
+      g[this->Axis[a]] = v[a];
+    }
+  }
+
+  /// The placement of a lattice with the axis @a flat (0 to 2) left out in 2-D.
+  static Placement withFlatAxis(int flat)
+  {
+    Placement placement;
+    for (int axis = 0, a = 0; axis < 3 && a < Dim; ++axis)
+    {
+      if (Dim == 3 || axis != flat)
+      {
+        placement.Axis[static_cast<std::size_t>(a++)] = axis;
+      }
+    }
+    return placement;
+  }
+};
+
+/// Names of the arrays of a control lattice.
+constexpr const char* CoefficientArrayName = "Coefficient";
+constexpr const char* FarFieldArrayName = "FarField";
+
+/// Writes a spline as a control lattice: origin lo - h, spacing h, dimensions N.
+template <int Dim>
+void toControlLattice(
+  const ImplicitSpline<Dim>& spline, const Placement<Dim>& placement, vtkImageData* image);
+
+/// The number of axes along which an image extends.
+int dimensionOfControlLattice(vtkImageData* image);
+
+/// Reads a spline back. Returns what is wrong, or an empty string.
+template <int Dim>
+std::string fromControlLattice(vtkImageData* image, std::unique_ptr<ImplicitSpline<Dim>>& spline,
+  Placement<Dim>& placement);
+}
+
+#endif

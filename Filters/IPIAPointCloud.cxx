@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "IPIAPointCloud.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkAppendPolyData.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkSMPTools.h"
+#include "vtkStaticPointLocator.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ipia
+{
+namespace
+{
+/// Extents and normal components below this share of the longest side (of 1) count as none.
+constexpr double FlatTolerance = 1e-7;
+
+/// Width of a line of points relative to its length, squared.
+constexpr double LineTolerance = 1e-12;
+
+/// A position may be nearer to another point by this factor than to its own.
+constexpr double OffsetSlack = 0.9;
+
+bool isFinite(const double* x, int n = 3)
+{
+  return std::all_of(x, x + n, [](double v) { return std::isfinite(v); });
+}
+
+using Vector3 = Eigen::Map<const Eigen::Vector3d>;
+}
+
+void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows)
+{
+  // All blocks as one data set. Each must have what is asked of it: appending drops arrays that only
+  // some blocks have.
+  std::vector<vtkPolyData*> blocks;
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(input))
+  {
+    auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      auto* block = vtkPolyData::SafeDownCast(iterator->GetCurrentDataObject());
+      if (block && block->GetNumberOfPoints() > 0)
+      {
+        blocks.push_back(block);
+      }
+    }
+  }
+  else if (auto* single = vtkPolyData::SafeDownCast(input))
+  {
+    blocks.push_back(single);
+  }
+  vtkIdType total = 0;
+  for (vtkPolyData* block : blocks)
+  {
+    total += block->GetNumberOfPoints();
+  }
+  if (total == 0)
+  {
+    this->Refusal = "The input has no points. Oriented points (vtkPolyData with point normals) are "
+                    "needed; its cells are not used.";
+    return;
+  }
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+  {
+    vtkDataArray* normals = choose(NormalsIndex, blocks[b]);
+    if (!normals || normals->GetNumberOfComponents() != 3 ||
+      normals->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints())
+    {
+      this->Refusal = blocks.size() > 1
+        ? "Block " + std::to_string(b) + " of the input has no point normals"
+        : std::string("The input has no point normals");
+      this->Refusal += normals
+        ? " (the array chosen has " + std::to_string(normals->GetNumberOfComponents()) +
+          " components and " + std::to_string(normals->GetNumberOfTuples()) + " tuples for " +
+          std::to_string(blocks[b]->GetNumberOfPoints()) + " points)."
+        : std::string(".");
+      this->Refusal += " Choose a point array of 3 components with SetInputArrayToProcess(0, ...) or "
+                       "compute normals with vtkPCANormalEstimation.";
+      return;
+    }
+  }
+  if (blocks.size() == 1)
+  {
+    this->Source = blocks.front();
+  }
+  else
+  {
+    vtkNew<vtkAppendPolyData> append;
+    append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    for (vtkPolyData* block : blocks)
+    {
+      append->AddInputData(block);
+    }
+    append->Update();
+    this->Source = append->GetOutput();
+  }
+  vtkDataArray* normals = choose(NormalsIndex, this->Source);
+  vtkDataArray* weights = choose(WeightsIndex, this->Source);
+  if (!normals)
+  {
+    this->Refusal = "The blocks of the input have no array of normals in common. Give it the same name "
+                    "in all of them.";
+    return;
+  }
+  if (weights && weights->GetNumberOfComponents() != 1)
+  {
+    this->Refusal = "The array of row weights has " +
+      std::to_string(weights->GetNumberOfComponents()) + " components; it must have one.";
+    return;
+  }
+
+  const vtkIdType n = this->Source->GetNumberOfPoints();
+  const auto reserve = static_cast<std::size_t>(n);
+  this->Ids.reserve(reserve);
+  this->Positions.reserve(reserve);
+  this->Normals.reserve(reserve);
+  this->Weights.reserve(weights ? reserve : 0);
+  this->Bounds = { VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX,
+    -VTK_DOUBLE_MAX };
+  bool anyNormal = false;
+  for (vtkIdType id = 0; id < n; ++id)
+  {
+    std::array<double, 3> x, normal;
+    this->Source->GetPoint(id, x.data());
+    if (!isFinite(x.data()))
+    {
+      ++this->LeftOut.NonFinitePoints;
+      continue;
+    }
+    if (weights)
+    {
+      const double w = weights->GetComponent(id, 0);
+      if (!(w >= 0 && std::isfinite(w)))
+      {
+        ++this->LeftOut.InvalidWeights;
+        continue;
+      }
+      this->Weights.push_back(w);
+    }
+    normals->GetTuple(id, normal.data());
+    // Scaled first, so that neither tiny nor huge normals under- or overflow.
+    const double largest =
+      std::max({ std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2]) });
+    if (isFinite(normal.data()) && largest > 0)
+    {
+      for (double& v : normal)
+      {
+        v /= largest;
+      }
+      vtkMath::Normalize(normal.data());
+      anyNormal = true;
+    }
+    else
+    {
+      normal = { 0, 0, 0 };
+      ++this->LeftOut.InvalidNormals;
+    }
+    this->Ids.push_back(id);
+    this->Positions.push_back(x);
+    this->Normals.push_back(normal);
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      this->Bounds[2 * a] = std::min(this->Bounds[2 * a], x[a]);
+      this->Bounds[2 * a + 1] = std::max(this->Bounds[2 * a + 1], x[a]);
+    }
+  }
+  if (this->Ids.empty())
+  {
+    this->Refusal = "None of the " + std::to_string(n) +
+      " points has finite coordinates and a valid weight.";
+  }
+  else if (this->Ids.size() == 1)
+  {
+    this->Refusal = "The input has one usable point; at least two are needed.";
+  }
+  else if (this->longestSide() == 0)
+  {
+    this->Refusal = "All " + std::to_string(this->Ids.size()) + " points are equal.";
+  }
+  else if (!anyNormal)
+  {
+    this->Refusal = "All " + std::to_string(this->Ids.size()) +
+      " normals are zero or not finite. Compute normals with vtkPCANormalEstimation.";
+  }
+  else if (extraRows)
+  {
+    this->gatherExtraRows(choose, extraRows);
+  }
+}
+
+void PointCloud::gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraRows)
+{
+  const vtkIdType n = extraRows->GetNumberOfPoints();
+  if (n == 0)
+  {
+    return;
+  }
+  vtkDataArray* values = choose(ExtraValuesIndex, extraRows);
+  if (!values || values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() != n)
+  {
+    this->Refusal = "The extra rows (input port 1) have no target values. Choose a point array of one "
+                    "component with SetInputArrayToProcess(2, 1, ...).";
+    return;
+  }
+  for (vtkIdType id = 0; id < n; ++id)
+  {
+    std::array<double, 3> x;
+    extraRows->GetPoint(id, x.data());
+    const double value = values->GetComponent(id, 0);
+    if (isFinite(x.data()) && std::isfinite(value))
+    {
+      this->ExtraPositions.push_back(x);
+      this->ExtraValues.push_back(value);
+    }
+    else
+    {
+      ++this->LeftOut.NonFiniteExtraRows;
+    }
+  }
+}
+
+double PointCloud::longestSide() const
+{
+  return std::max({ this->Bounds[1] - this->Bounds[0], this->Bounds[3] - this->Bounds[2],
+    this->Bounds[5] - this->Bounds[4] });
+}
+
+bool PointCloud::isLine() const
+{
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  const Vector3 first(this->Positions.front().data());
+  for (const auto& x : this->Positions)
+  {
+    centre += Vector3(x.data()) - first;
+  }
+  centre = first + centre / static_cast<double>(this->Positions.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const auto& x : this->Positions)
+  {
+    const Eigen::Vector3d d = (Vector3(x.data()) - centre) / this->longestSide();
+    scatter += d * d.transpose();
+  }
+  const Eigen::Vector3d moments =
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter, Eigen::EigenvaluesOnly).eigenvalues();
+  return moments[1] <= LineTolerance * moments[2];
+}
+
+int PointCloud::axisWithoutExtent() const
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto a = static_cast<std::size_t>(axis);
+    if (this->Bounds[2 * a + 1] - this->Bounds[2 * a] <= FlatTolerance * this->longestSide())
+    {
+      return axis;
+    }
+  }
+  return -1;
+}
+
+int PointCloud::flatAxis() const
+{
+  for (int axis = 2; axis >= 0; --axis)
+  {
+    const auto a = static_cast<std::size_t>(axis);
+    if (this->Bounds[2 * a + 1] - this->Bounds[2 * a] <= FlatTolerance * this->longestSide() &&
+      std::all_of(this->Normals.begin(), this->Normals.end(),
+        [a](const std::array<double, 3>& n) { return std::abs(n[a]) <= FlatTolerance; }))
+    {
+      return axis;
+    }
+  }
+  return -1;
+}
+
+std::vector<double> PointCloud::offsetDistances(double distance, double side) const
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(this->Positions.size()));
+  for (std::size_t k = 0; k < this->Positions.size(); ++k)
+  {
+    points->SetPoint(static_cast<vtkIdType>(k), this->Positions[k].data());
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  vtkNew<vtkStaticPointLocator> locator;
+  locator->SetDataSet(data);
+  locator->BuildLocator();
+
+  std::vector<double> distances(this->Positions.size(), 0.0);
+  vtkSMPTools::For(0, static_cast<vtkIdType>(this->Positions.size()),
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType id = begin; id < end; ++id)
+      {
+        const auto k = static_cast<std::size_t>(id);
+        const Vector3 p(this->Positions[k].data());
+        const Eigen::Vector3d n = side * Vector3(this->Normals[k].data());
+        double reach = n.isZero(0) ? 0.0 : distance;
+        while (reach > 0)
+        {
+          const Eigen::Vector3d x = p + reach * n;
+          double squared = 0;
+          const vtkIdType nearest =
+            locator->FindClosestPointWithinRadius(OffsetSlack * reach, x.data(), squared);
+          if (nearest < 0)
+          {
+            break;
+          }
+          // The distance at which this neighbour is nearer by just the slack:
+          // |reach n - e|^2 = (slack reach)^2.
+          const Eigen::Vector3d e = Vector3(this->Positions[static_cast<std::size_t>(nearest)].data()) - p;
+          constexpr double a = 1 - OffsetSlack * OffsetSlack;
+          const double along = n.dot(e);
+          const double root = std::sqrt(std::max(0.0, along * along - a * e.squaredNorm()));
+          const double shorter = (along - root) / a;
+          reach = shorter < reach * (1 - 1e-6) ? shorter : reach / 2;
+        }
+        distances[k] = reach;
+      }
+    });
+  return distances;
+}
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The input of the fit, taken out of VTK's data sets and sorted into what can be used and what not.
+ */
+#ifndef IPIAPointCloud_h
+#define IPIAPointCloud_h
+
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+class vtkDataObject;
+
+namespace ipia
+{
+/**
+ * Points with unit normals in world coordinates, and what was found about them.
+ */
+class PointCloud
+{
+public:
+  /// Indices of SetInputArrayToProcess.
+  enum ArrayIndex
+  {
+    NormalsIndex = 0,
+    WeightsIndex = 1,
+    ExtraValuesIndex = 2
+  };
+
+  /// The array of a data set that was chosen for an index, or nullptr.
+  using ArrayChooser = std::function<vtkDataArray*(int index, vtkDataObject* data)>;
+
+  /**
+   * Takes all finite points of @a input (vtkPolyData or a composite of them) and of @a extraRows
+   * (vtkPolyData or nullptr), with the arrays that @a choose names.
+   */
+  void gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows);
+
+  /// Why nothing can be fitted; empty if all is well.
+  std::string Refusal;
+
+  /// The input as one data set; Ids are the points of it that were taken.
+  vtkSmartPointer<vtkPolyData> Source;
+  std::vector<vtkIdType> Ids;
+  std::vector<std::array<double, 3>> Positions;
+  std::vector<std::array<double, 3>> Normals; ///< unit length, or 0 where there is none
+  std::vector<double> Weights;                ///< empty: 1
+  std::vector<std::array<double, 3>> ExtraPositions;
+  std::vector<double> ExtraValues;
+
+  /// What was left out, for one warning.
+  struct LeftOutCounts
+  {
+    vtkIdType NonFinitePoints = 0;
+    vtkIdType InvalidNormals = 0;
+    vtkIdType InvalidWeights = 0;
+    vtkIdType NonFiniteExtraRows = 0;
+
+    vtkIdType Total() const
+    {
+      return this->NonFinitePoints + this->InvalidNormals + this->InvalidWeights +
+        this->NonFiniteExtraRows;
+    }
+  } LeftOut;
+
+  /// min and max per axis.
+  std::array<double, 6> Bounds{};
+
+  double longestSide() const;
+
+  /// True if the points lie on a line, whatever its direction.
+  bool isLine() const;
+
+  /// The axis that all points and normals are perpendicular to, or -1.
+  int flatAxis() const;
+
+  /// The axis along which the points have no extent, or -1; normals may have any direction.
+  int axisWithoutExtent() const;
+
+  /**
+   * For each point the largest distance up to @a distance along @a side (+1 or -1) times its normal at
+   * which the position is not nearer to another data point, a tenth forgiven so that noise does not
+   * draw it in: the shrinking ball of the medial axis. 0 where there is no normal.
+   */
+  std::vector<double> offsetDistances(double distance, double side) const;
+
+private:
+  void gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraRows);
+};
+}
+
+#endif

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkIPIAImplicitFitter
+ * @brief   fit an implicit B-spline function to oriented points by I-PIA
+ *
+ * vtkIPIAImplicitFitter turns points with oriented normals into a function f whose zero set is the
+ * surface (3-D) or curve (2-D) through the points, sampled as a vtkImageData. A contour filter makes
+ * the surface:
+ *
+ * @code
+ *   vtkNew<vtkIPIAImplicitFitter> fitter;
+ *   fitter->SetInputConnection(points->GetOutputPort()); // vtkPolyData with point normals
+ *   vtkNew<vtkFlyingEdges3D> surface;                    // vtkFlyingEdges2D in the plane
+ *   surface->SetInputConnection(fitter->GetOutputPort());
+ *   surface->SetValue(0, 0.0);
+ *   surface->Update();
+ * @endcode
+ *
+ * Points without normals get them from vtkPCANormalEstimation first.
+ *
+ * ### Method
+ * f(x) = sum_i C_i B_i(x) is a tensor-product cubic B-spline on a uniform lattice. Each point p_k with
+ * unit normal n_k and weight w_k gives rows of a linear least-squares problem: f(p_k) = 0, and offset
+ * rows f(p_k + sigma n_k) = epsilon and f(p_k - sigma n_k) = -epsilon (NormalConstraint). With B the
+ * collocation matrix of the rows, implicit progressive-iterative approximation takes
+ *
+ *     C <- C + mu B^T W (b - B C),   C = 0 at first,   mu = 2 / max_i sum_k w_k B_i(x_k)
+ *
+ * (Hamza, Lin, Li, eq. 11 and 16; remarks 3.1 and 3.2), whose limit is the least-squares solution of
+ * least norm, (B^T W B)^+ B^T W b (theorem 3.4). Conjugate gradients reach the same limit in fewer
+ * iterations.
+ *
+ * f < 0 inside and f > 0 outside, where the normals point to, as for vtkImplicitFunction; near the
+ * data f approximates signed distance in world units as long as OffsetValue is 0.
+ *
+ * ### Far field
+ * Where no row touches a coefficient it stays 0, and contour filters would draw a second sheet along
+ * the inner side of the data. Knot cells with little support (the density of rows there is below
+ * 1/20 of its median at the data) therefore take a constant: the OffsetValue used, with the sign of f
+ * around their connected region. A region that meets both signs (an open surface, a wide hole)
+ * takes that of the larger share and a warning says so.
+ *
+ * ### Input
+ * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of them,
+ * all of whose blocks make one fit. SetInputArrayToProcess: 0, the normals (3 components; default: the
+ * active point normals); 1, optional row weights w_k >= 0 (1 component). Any numeric type. Normals need
+ * not have unit length.
+ *
+ * Port 1, optional: vtkPolyData with more rows, points at which f shall take a given value, of weight
+ * 1. SetInputArrayToProcess 2 (port 1): the values (default: the active point scalars).
+ *
+ * ### Output
+ * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`; the results below
+ * as field data. Origin and last point are the ends of the domain. Any sub-extent can be asked for.
+ * Port 1: the points that were fitted, with all their arrays, and `Residual` (f) and `Distance`
+ * (f / |grad f|).
+ * Port 2: the control lattice, a vtkImageData with point array `Coefficient`, origin lo - h, spacing h
+ * and dimensions N, on domain [lo, hi], and cell array `FarField`. vtkIPIAImplicitFunction takes it;
+ * vtkImageBSplineInterpolator of degree 3 interpolates it.
+ *
+ * ### Two dimensions
+ * If all points lie in a plane perpendicular to an axis and their normals in that plane, f is a
+ * bicubic spline in that plane and the image has one slice. Otherwise the fit is tricubic.
+ *
+ * ### Errors
+ * Refused with one error and empty outputs: no points, one point, all points equal or (in 3-D) on a
+ * line, no or only zero normals, grid sizes below 4, sample dimensions below 2, bounds that are empty
+ * or hold no point, a step size that diverges, and sizes that the machine's memory would not hold.
+ * Left out with one warning that counts them: non-finite points, weights or extra rows, zero or non-finite
+ * normals (their offset rows), points outside ModelBounds. An abort leaves empty outputs.
+ *
+ * ### Threads and reproducibility
+ * The fit runs on OpenMP threads (OMP_NUM_THREADS). Results do not depend on their number, bit for bit.
+ *
+ * Y. F. Hamza, H. Lin, Z. Li: Implicit progressive-iterative approximation for curve and surface
+ * reconstruction. Computer Aided Geometric Design 77, 2020.
+ *
+ * @sa vtkIPIAImplicitFunction vtkFlyingEdges3D vtkFlyingEdges2D vtkContourFilter
+ * vtkPCANormalEstimation vtkSignedDistance
+ */
+#ifndef vtkIPIAImplicitFitter_h
+#define vtkIPIAImplicitFitter_h
+
+#include "vtkFiltersIPIAModule.h" // for the export macro
+#include "vtkImageAlgorithm.h"
+
+#include <memory> // for std::unique_ptr
+
+class vtkFieldData;
+class vtkIPIAImplicitFunction;
+class vtkPolyData;
+
+class VTKFILTERSIPIA_EXPORT vtkIPIAImplicitFitter : public vtkImageAlgorithm
+{
+public:
+  static vtkIPIAImplicitFitter* New();
+  vtkTypeMacro(vtkIPIAImplicitFitter, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * More rows (port 1, optional): points with target values of f.
+   */
+  void SetExtraRowsConnection(vtkAlgorithmOutput* output);
+  void SetExtraRowsData(vtkPolyData* rows);
+  ///@}
+
+  ///@{
+  /**
+   * The domain, world units: (xmin, xmax, ymin, ymax, zmin, zmax). Invalid bounds (max < min, the
+   * default) mean the bounds of the points, enlarged by Padding. Points outside are left out.
+   */
+  vtkSetVector6Macro(ModelBounds, double);
+  vtkGetVector6Macro(ModelBounds, double);
+  ///@}
+
+  ///@{
+  /**
+   * Margin around the points of an automatic domain, as a multiple of their longest side; at least two
+   * knot spacings are taken. >= 0, default 0.05.
+   */
+  vtkSetClampMacro(Padding, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(Padding, double);
+  ///@}
+
+  ///@{
+  /**
+   * Control coefficients N per axis ("grid size" in the papers), each >= 4, or 0: derived. If all are
+   * 0 (the default) the knot spacing is 1.6 times the point spacing, with at most 256 spacings along
+   * the longest side. In an automatic domain the spacing is the same on all axes and the upper end
+   * grows to a whole number of them; ModelBounds are kept exactly.
+   */
+  vtkSetVector3Macro(GridSize, int);
+  vtkGetVector3Macro(GridSize, int);
+  ///@}
+
+  ///@{
+  /**
+   * Sample points of output 0 per axis, each >= 2, or 0 (the default): 2 (N - 3) + 1, half the knot
+   * spacing, but no more than 2^28 points in all.
+   */
+  vtkSetVector3Macro(SampleDimensions, int);
+  vtkGetVector3Macro(SampleDimensions, int);
+  ///@}
+
+  ///@{
+  /**
+   * 2 or 3, or 0 (the default): 2 where points and normals lie in a plane perpendicular to an axis.
+   */
+  vtkSetClampMacro(Dimension, int, 0, 3);
+  vtkGetMacro(Dimension, int);
+  ///@}
+
+  /// How the normals enter.
+  enum NormalConstraints
+  {
+    OutwardOffset = 0, ///< f(p + sigma n) = epsilon, as in the 2019 paper
+    TwoSidedOffset = 1 ///< and f(p - sigma n) = -epsilon (default)
+  };
+
+  ///@{
+  /**
+   * The rows that a normal gives. Default TwoSidedOffset.
+   */
+  vtkSetClampMacro(NormalConstraint, int, OutwardOffset, TwoSidedOffset);
+  vtkGetMacro(NormalConstraint, int);
+  void SetNormalConstraintToOutwardOffset() { this->SetNormalConstraint(OutwardOffset); }
+  void SetNormalConstraintToTwoSidedOffset() { this->SetNormalConstraint(TwoSidedOffset); }
+  ///@}
+
+  ///@{
+  /**
+   * Distance sigma of the offset rows from their point, world units. 0 (the default): 1.5 times the
+   * largest knot spacing, less where that position would lie nearer to another data point.
+   */
+  vtkSetClampMacro(OffsetDistance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(OffsetDistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Value epsilon of f at the offset rows. 0 (the default): equal to their distance, so that f
+   * approximates signed distance.
+   */
+  vtkSetClampMacro(OffsetValue, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(OffsetValue, double);
+  ///@}
+
+  ///@{
+  /**
+   * Distance and (absolute) value of the inward rows; 0 (the default): as outward.
+   */
+  vtkSetClampMacro(InwardOffsetDistance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(InwardOffsetDistance, double);
+  vtkSetClampMacro(InwardOffsetValue, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(InwardOffsetValue, double);
+  ///@}
+
+  /// The iteration.
+  enum Solvers
+  {
+    ProgressiveIteration = 0, ///< C <- C + mu B^T W (b - B C) (default)
+    ConjugateGradient = 1     ///< the same limit in fewer iterations
+  };
+
+  ///@{
+  /**
+   * The solver. Default ProgressiveIteration.
+   */
+  vtkSetClampMacro(Solver, int, ProgressiveIteration, ConjugateGradient);
+  vtkGetMacro(Solver, int);
+  void SetSolverToProgressiveIteration() { this->SetSolver(ProgressiveIteration); }
+  void SetSolverToConjugateGradient() { this->SetSolver(ConjugateGradient); }
+  ///@}
+
+  ///@{
+  /**
+   * Number of lattice levels. 1 (the default) is the papers' single level, and so far the only value.
+   */
+  vtkSetClampMacro(NumberOfLevels, int, 1, 1);
+  vtkGetMacro(NumberOfLevels, int);
+  ///@}
+
+  ///@{
+  /**
+   * Iterations at most. 0 (the default): 100.
+   */
+  vtkSetClampMacro(MaximumNumberOfIterations, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumNumberOfIterations, int);
+  ///@}
+
+  ///@{
+  /**
+   * The iteration ends when the measure of StoppingRule falls below this. 0 (the default): all
+   * iterations are done.
+   */
+  vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  /// What Tolerance is compared with.
+  enum StoppingRules
+  {
+    RelativeResidual = 0, ///< ||B^T W r|| / ||B^T W r0|| (default)
+    EnergyChange = 1      ///< |E_new - E_old|
+  };
+
+  ///@{
+  /**
+   * The measure that Tolerance bounds. Default RelativeResidual.
+   */
+  vtkSetClampMacro(StoppingRule, int, RelativeResidual, EnergyChange);
+  vtkGetMacro(StoppingRule, int);
+  void SetStoppingRuleToRelativeResidual() { this->SetStoppingRule(RelativeResidual); }
+  void SetStoppingRuleToEnergyChange() { this->SetStoppingRule(EnergyChange); }
+  ///@}
+
+  ///@{
+  /**
+   * Step size mu of ProgressiveIteration; it converges for 0 < mu < 2 / lambda_max(B^T W B), beyond
+   * that the fit is refused as soon as the energy rises. 0 (the default): 2 / max_i sum_k w_k B_i(x_k).
+   */
+  vtkSetClampMacro(StepSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(StepSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * Add the exact gradient of f to output 0 as `Gradient`. Default off.
+   */
+  vtkSetMacro(GenerateGradient, bool);
+  vtkGetMacro(GenerateGradient, bool);
+  vtkBooleanMacro(GenerateGradient, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Add the support of f to output 0 as `Support`: the density of rows sum_i B_i(x) sum_k B_i(x_k) over
+   * its median at the points, 1 where data are typical, 0 far from them. Default off.
+   */
+  vtkSetMacro(GenerateSupport, bool);
+  vtkGetMacro(GenerateSupport, bool);
+  vtkBooleanMacro(GenerateSupport, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Type of the arrays of output 0: VTK_FLOAT (the default) or VTK_DOUBLE.
+   */
+  vtkSetClampMacro(OutputScalarType, int, VTK_FLOAT, VTK_DOUBLE);
+  vtkGetMacro(OutputScalarType, int);
+  void SetOutputScalarTypeToFloat() { this->SetOutputScalarType(VTK_FLOAT); }
+  void SetOutputScalarTypeToDouble() { this->SetOutputScalarType(VTK_DOUBLE); }
+  ///@}
+
+  ///@{
+  /**
+   * Results of the last fit, also in the field data of output 0, there under their names without "Get",
+   * with the array `ResidualHistory` of ||B^T W r|| / ||B^T W r0|| before the first and after every
+   * iteration. All are 0 after a refused fit.
+   *
+   * StepSizeUsed is 0 with ConjugateGradient. Energy is E = sum_k w_k r_k^2 over all rows; AverageError
+   * and MaximumError are the mean of f^2 and the maximum of |f| at the points; Oscillation is R(C), the
+   * sum over coefficients of the squared differences to their axis neighbours. OffsetDistanceUsed is
+   * the distance that was aimed at, before rows were drawn nearer to their points.
+   */
+  vtkGetMacro(NumberOfIterationsUsed, int);
+  vtkGetMacro(StepSizeUsed, double);
+  vtkGetMacro(Energy, double);
+  vtkGetMacro(AverageError, double);
+  vtkGetMacro(MaximumError, double);
+  vtkGetMacro(Oscillation, double);
+  vtkGetMacro(OffsetDistanceUsed, double);
+  vtkGetVector3Macro(GridSizeUsed, int);
+  vtkGetVector6Macro(ModelBoundsUsed, double);
+  ///@}
+
+  /**
+   * The fit as a function, exact anywhere; brought up to date by Update(). It belongs to the filter and
+   * is without a lattice before the first and after a refused fit.
+   */
+  vtkIPIAImplicitFunction* GetImplicitFunction();
+
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+protected:
+  vtkIPIAImplicitFitter();
+  ~vtkIPIAImplicitFitter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+  double ModelBounds[6];
+  double Padding;
+  int GridSize[3];
+  int SampleDimensions[3];
+  int Dimension;
+  int NormalConstraint;
+  double OffsetDistance;
+  double OffsetValue;
+  double InwardOffsetDistance;
+  double InwardOffsetValue;
+  int Solver;
+  int NumberOfLevels;
+  int MaximumNumberOfIterations;
+  double Tolerance;
+  int StoppingRule;
+  double StepSize;
+  bool GenerateGradient;
+  bool GenerateSupport;
+  int OutputScalarType;
+
+  int NumberOfIterationsUsed;
+  double StepSizeUsed;
+  double Energy;
+  double AverageError;
+  double MaximumError;
+  double Oscillation;
+  double OffsetDistanceUsed;
+  int GridSizeUsed[3];
+  double ModelBoundsUsed[6];
+
+private:
+  vtkIPIAImplicitFitter(const vtkIPIAImplicitFitter&) = delete;
+  void operator=(const vtkIPIAImplicitFitter&) = delete;
+
+  class Problem;
+  class Internals;
+
+  void BringInputUpToDate(vtkInformation* outInfo);
+  void PrepareProblem(vtkInformationVector** input);
+  bool Fit();
+  template <int Dim>
+  bool FitInDimension();
+  void DiscardFit();
+  void ResetResults();
+  template <int Dim, typename ArrayType>
+  bool SampleImage(vtkImageData* image);
+  void WriteFittedPoints(vtkPolyData* output);
+  void WriteResults(vtkFieldData* field) const;
+  bool ReportProgress(double share);
+
+  std::unique_ptr<Internals> State;
+};
+
+#endif
