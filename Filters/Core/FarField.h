@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What f is where no data says it.
+ * What f is where no data say it.
  *
- * With a zero start, coefficients that no row touches stay 0, and where the band of data ends f decays
- * to 0. Contour filters count 0 as outside, so that the inner rim of the band would become a second
- * sheet. Knot cells without support therefore get a constant of the sign that their region's rim has.
+ * With a zero start, coefficients that no row touches stay 0, and around the band of data f decays to
+ * 0 with arbitrary sign. Contour filters count 0 as outside, so that the inner rim of the band would
+ * become a second sheet, and ripples beside it would become bubbles. The far field gives such knot
+ * cells a constant of the right sign.
  */
 #ifndef ipia_FarField_h
 #define ipia_FarField_h
@@ -23,7 +24,7 @@ struct FarField
   std::vector<std::int8_t> Sign;
   double Magnitude = 0; ///< |f| in unsupported cells, > 0
 
-  /// Whether a region without support had rims of both signs (an open surface, a wide hole).
+  /// Regions without support whose rims have both signs (an open surface, a wide hole).
   int NumberOfMixedRegions = 0;
 
   double value(std::int64_t cell) const
@@ -34,7 +35,7 @@ struct FarField
 
 struct FarFieldOptions
 {
-  double Threshold = 0.05; ///< a cell is unsupported where s < Threshold; 0: none is
+  double Threshold = 0.05; ///< a cell is unsupported where s < Threshold
   double Magnitude = 1;    ///< |f| there
   int Threads = 0;
 };
@@ -45,17 +46,25 @@ double medianSupport(const Lattice<Dim>& lattice, const Vector& support,
   const Points<Dim>& dataPoints, int threads);
 
 /**
- * Finds the cells without support and the sign of each connected region of them.
+ * Finds the cells where the spline does not count, in two steps.
  *
- * Support s(x) = sum_i B_i(x) S_i, with S_i = sum_k B_i(x_k) over all rows, scaled so that its median
- * at the data points is 1, is taken at cell centres. A region's sign is that of the larger share of the supported cells that share a face with it.
+ * 1. Cells without support: s(x) = sum_i B_i(x) S_i with S_i = sum_k B_i(x_k) over all rows, scaled so
+ *    that its median at the data points is 1, is below the threshold at the centre. Each connected
+ *    region of them takes the sign of the larger share of the supported cells around it.
+ * 2. Signs that nothing vouches for: on the grid of half knot spacings, a connected region where f > 0
+ *    must hold a position just outside some data point, one where f < 0 a position just inside;
+ *    otherwise the cells of that region take the opposite sign, but for those that hold data points.
  *
  * @param support       S, scaled, lattice.numberOfCoefficients() values
  * @param coefficients  of f
+ * @param outside       Dim x n, positions just outside the data, where f > 0 is right
+ * @param inside        Dim x m, positions just inside, where f < 0 is right
+ * @param dataPoints    Dim x l, the cells of which are left alone by step 2
  */
 template <int Dim>
 FarField computeFarField(const Lattice<Dim>& lattice, const Vector& support,
-  const Vector& coefficients, const FarFieldOptions& options);
+  const Vector& coefficients, const Points<Dim>& outside, const Points<Dim>& inside,
+  const Points<Dim>& dataPoints, const FarFieldOptions& options);
 }
 
 #endif

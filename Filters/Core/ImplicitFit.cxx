@@ -49,6 +49,24 @@ ConstraintRows<Dim> makeRows(const Lattice<Dim>& lattice, const FitInput<Dim>& i
     lattice, positions.leftCols(used), targets.head(used), weights.head(used));
 }
 
+/// How far beside its point a normal tells the sign of f, in knot spacings.
+constexpr double WitnessDistance = 0.5;
+
+/// The positions, and those extra rows whose value has the given sign.
+template <int Dim>
+Points<Dim> withExtra(const FitInput<Dim>& input, Points<Dim> positions, int sign)
+{
+  for (std::int64_t k = 0; k < input.ExtraValues.size(); ++k)
+  {
+    if (input.ExtraValues[k] * sign > 0)
+    {
+      positions.conservativeResize(Dim, positions.cols() + 1);
+      positions.col(positions.cols() - 1) = input.ExtraPositions.col(k);
+    }
+  }
+  return positions;
+}
+
 template <int Dim>
 Vector valuesAt(const ImplicitSpline<Dim>& function, const Points<Dim>& positions, int threads)
 {
@@ -109,7 +127,11 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
   FarField far;
   if (farOptions.Threshold > 0 && solved.Status == SolverStatus::Done)
   {
-    far = computeFarField(lattice, support, coefficients, farOptions);
+    const double probe = WitnessDistance * lattice.Spacing.maxCoeff();
+    const Points<Dim> outside = withExtra<Dim>(input, input.Positions + probe * input.Normals, 1);
+    const Points<Dim> inside = withExtra<Dim>(input, input.Positions - probe * input.Normals, -1);
+    far = computeFarField(
+      lattice, support, coefficients, outside, inside, input.Positions, farOptions);
   }
 
   FitResult<Dim> result{ ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)),
