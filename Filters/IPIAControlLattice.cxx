@@ -76,8 +76,8 @@ int dimensionOfControlLattice(vtkImageData* image)
 }
 
 template <int Dim>
-std::string fromControlLattice(vtkImageData* image, std::unique_ptr<ImplicitSpline<Dim>>& spline,
-  Placement<Dim>& placement)
+std::string fromControlLattice(
+  vtkImageData* image, std::unique_ptr<ImplicitSpline<Dim>>& spline, Placement<Dim>& placement)
 {
   const int* dimensions = image->GetDimensions();
   const auto flat = std::find(dimensions, dimensions + 3, 1) - dimensions;
@@ -130,10 +130,8 @@ std::string fromControlLattice(vtkImageData* image, std::unique_ptr<ImplicitSpli
   return {};
 }
 
-template void toControlLattice<2>(
-  const ImplicitSpline<2>&, const Placement<2>&, vtkImageData*);
-template void toControlLattice<3>(
-  const ImplicitSpline<3>&, const Placement<3>&, vtkImageData*);
+template void toControlLattice<2>(const ImplicitSpline<2>&, const Placement<2>&, vtkImageData*);
+template void toControlLattice<3>(const ImplicitSpline<3>&, const Placement<3>&, vtkImageData*);
 template std::string fromControlLattice<2>(
   vtkImageData*, std::unique_ptr<ImplicitSpline<2>>&, Placement<2>&);
 template std::string fromControlLattice<3>(

@@ -15,8 +15,8 @@
 
 namespace ipia
 {
-/// The axes of space that the Dim axes of a fit lie along, and the lower corner of its domain. In 2-D
-/// the origin's coordinate on the third axis is that of the plane.
+/// The axes of space that the Dim axes of a fit lie along, and the lower corner of its domain. In
+/// 2-D the origin's coordinate on the third axis is that of the plane.
 template <int Dim>
 struct Placement
 {
@@ -72,8 +72,8 @@ int dimensionOfControlLattice(vtkImageData* image);
 
 /// Reads a spline back. Returns what is wrong, or an empty string.
 template <int Dim>
-std::string fromControlLattice(vtkImageData* image, std::unique_ptr<ImplicitSpline<Dim>>& spline,
-  Placement<Dim>& placement);
+std::string fromControlLattice(
+  vtkImageData* image, std::unique_ptr<ImplicitSpline<Dim>>& spline, Placement<Dim>& placement);
 }
 
 #endif

@@ -41,8 +41,8 @@ using Vector3 = Eigen::Map<const Eigen::Vector3d>;
 
 void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows)
 {
-  // All blocks as one data set. Each must have what is asked of it: appending drops arrays that only
-  // some blocks have.
+  // All blocks as one data set. Each must have what is asked of it: appending drops arrays that
+  // only some blocks have.
   std::vector<vtkPolyData*> blocks;
   if (auto* composite = vtkCompositeDataSet::SafeDownCast(input))
   {
@@ -85,8 +85,9 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
           " components and " + std::to_string(normals->GetNumberOfTuples()) + " tuples for " +
           std::to_string(blocks[b]->GetNumberOfPoints()) + " points)."
         : std::string(".");
-      this->Refusal += " Choose a point array of 3 components with SetInputArrayToProcess(0, ...) or "
-                       "compute normals with vtkPCANormalEstimation.";
+      this->Refusal +=
+        " Choose a point array of 3 components with SetInputArrayToProcess(0, ...) or "
+        "compute normals with vtkPCANormalEstimation.";
       return;
     }
   }
@@ -109,8 +110,9 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   vtkDataArray* weights = choose(WeightsIndex, this->Source);
   if (!normals)
   {
-    this->Refusal = "The blocks of the input have no array of normals in common. Give it the same name "
-                    "in all of them.";
+    this->Refusal =
+      "The blocks of the input have no array of normals in common. Give it the same name "
+      "in all of them.";
     return;
   }
   if (weights && weights->GetNumberOfComponents() != 1)
@@ -177,8 +179,8 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   }
   if (this->Ids.empty())
   {
-    this->Refusal = "None of the " + std::to_string(n) +
-      " points has finite coordinates and a valid weight.";
+    this->Refusal =
+      "None of the " + std::to_string(n) + " points has finite coordinates and a valid weight.";
   }
   else if (this->Ids.size() == 1)
   {
@@ -209,8 +211,9 @@ void PointCloud::gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraR
   vtkDataArray* values = choose(ExtraValuesIndex, extraRows);
   if (!values || values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() != n)
   {
-    this->Refusal = "The extra rows (input port 1) have no target values. Choose a point array of one "
-                    "component with SetInputArrayToProcess(2, 1, ...).";
+    this->Refusal =
+      "The extra rows (input port 1) have no target values. Choose a point array of one "
+      "component with SetInputArrayToProcess(2, 1, ...).";
     return;
   }
   for (vtkIdType id = 0; id < n; ++id)
@@ -321,7 +324,8 @@ std::vector<double> PointCloud::offsetDistances(double distance, double side) co
           }
           // The distance at which this neighbour is nearer by just the slack:
           // |reach n - e|^2 = (slack reach)^2.
-          const Eigen::Vector3d e = Vector3(this->Positions[static_cast<std::size_t>(nearest)].data()) - p;
+          const Eigen::Vector3d e =
+            Vector3(this->Positions[static_cast<std::size_t>(nearest)].data()) - p;
           constexpr double a = 1 - OffsetSlack * OffsetSlack;
           const double along = n.dot(e);
           const double root = std::sqrt(std::max(0.0, along * along - a * e.squaredNorm()));

@@ -84,9 +84,9 @@ public:
   int axisWithoutExtent() const;
 
   /**
-   * For each point the largest distance up to @a distance along @a side (+1 or -1) times its normal at
-   * which the position is not nearer to another data point, a tenth forgiven so that noise does not
-   * draw it in: the shrinking ball of the medial axis. 0 where there is no normal.
+   * For each point the largest distance up to @a distance along @a side (+1 or -1) times its normal
+   * at which the position is not nearer to another data point, a tenth forgiven so that noise does
+   * not draw it in: the shrinking ball of the medial axis. 0 where there is no normal.
    */
   std::vector<double> offsetDistances(double distance, double side) const;
 

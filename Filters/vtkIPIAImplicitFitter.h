@@ -4,8 +4,8 @@
  * @brief   fit an implicit B-spline function to oriented points by I-PIA
  *
  * vtkIPIAImplicitFitter turns points with oriented normals into a function f whose zero set is the
- * surface (3-D) or curve (2-D) through the points, sampled as a vtkImageData. A contour filter makes
- * the surface:
+ * surface (3-D) or curve (2-D) through the points, sampled as a vtkImageData. A contour filter
+ * makes the surface:
  *
  * @code
  *   vtkNew<vtkIPIAImplicitFitter> fitter;
@@ -19,44 +19,46 @@
  * Points without normals get them from vtkPCANormalEstimation first.
  *
  * ### Method
- * f(x) = sum_i C_i B_i(x) is a tensor-product cubic B-spline on a uniform lattice. Each point p_k with
- * unit normal n_k and weight w_k gives rows of a linear least-squares problem: f(p_k) = 0, and offset
- * rows f(p_k + sigma n_k) = epsilon and f(p_k - sigma n_k) = -epsilon (NormalConstraint). With B the
- * collocation matrix of the rows, implicit progressive-iterative approximation takes
+ * f(x) = sum_i C_i B_i(x) is a tensor-product cubic B-spline on a uniform lattice. Each point p_k
+ * with unit normal n_k and weight w_k gives rows of a linear least-squares problem: f(p_k) = 0, and
+ * offset rows f(p_k + sigma n_k) = epsilon and f(p_k - sigma n_k) = -epsilon (NormalConstraint).
+ * With B the collocation matrix of the rows, implicit progressive-iterative approximation takes
  *
  *     C <- C + mu B^T W (b - B C),   C = 0 at first,   mu = 2 / max_i sum_k w_k B_i(x_k)
  *
- * (Hamza, Lin, Li, eq. 11 and 16; remarks 3.1 and 3.2), whose limit is the least-squares solution of
- * least norm, (B^T W B)^+ B^T W b (theorem 3.4). Conjugate gradients reach the same limit in fewer
- * iterations.
+ * (Hamza, Lin, Li, eq. 11 and 16; remarks 3.1 and 3.2), whose limit is the least-squares solution
+ * of least norm, (B^T W B)^+ B^T W b (theorem 3.4). Conjugate gradients reach the same limit in
+ * fewer iterations.
  *
  * f < 0 inside and f > 0 outside, where the normals point to, as for vtkImplicitFunction; near the
  * data f approximates signed distance in world units as long as OffsetValue is 0.
  *
  * ### Far field
- * Where no row touches a coefficient it stays 0, and contour filters would draw a second sheet along
- * the inner side of the data. Knot cells with little support (the density of rows there is below
- * 1/20 of its median at the data) therefore take a constant: the OffsetValue used, with the sign of f
- * around their connected region. A region that meets both signs (an open surface, a wide hole)
- * takes that of the larger share and a warning says so.
+ * Where no row touches a coefficient it stays 0, and contour filters would draw a second sheet
+ * along the inner side of the data. Knot cells with little support (the density of rows there is
+ * below 1/20 of its median at the data) therefore take a constant: the OffsetValue used, with the
+ * sign of f around their connected region. A region that meets both signs (an open surface, a wide
+ * hole) takes that of the larger share and a warning says so. So do cells of regions of one sign
+ * that no point vouches for: bubbles that many iterations raise beside the data.
  *
  * ### Input
- * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of them,
- * all of whose blocks make one fit. SetInputArrayToProcess: 0, the normals (3 components; default: the
- * active point normals); 1, optional row weights w_k >= 0 (1 component). Any numeric type. Normals need
- * not have unit length.
+ * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of
+ * them, all of whose blocks make one fit. SetInputArrayToProcess: 0, the normals (3 components;
+ * default: the active point normals); 1, optional row weights w_k >= 0 (1 component). Any numeric
+ * type. Normals need not have unit length.
  *
- * Port 1, optional: vtkPolyData with more rows, points at which f shall take a given value, of weight
+ * Port 1, optional: vtkPolyData with more rows, points at which f shall take a given value, of
+ * weight
  * 1. SetInputArrayToProcess 2 (port 1): the values (default: the active point scalars).
  *
  * ### Output
- * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`; the results below
- * as field data. Origin and last point are the ends of the domain. Any sub-extent can be asked for.
- * Port 1: the points that were fitted, with all their arrays, and `Residual` (f) and `Distance`
- * (f / |grad f|).
- * Port 2: the control lattice, a vtkImageData with point array `Coefficient`, origin lo - h, spacing h
- * and dimensions N, on domain [lo, hi], and cell array `FarField`. vtkIPIAImplicitFunction takes it;
- * vtkImageBSplineInterpolator of degree 3 interpolates it.
+ * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`; the results
+ * below as field data. Origin and last point are the ends of the domain. Any sub-extent can be
+ * asked for. Port 1: the points that were fitted, with all their arrays, and `Residual` (f) and
+ * `Distance` (f / |grad f|). Port 2: the control lattice, a vtkImageData with point array
+ * `Coefficient`, origin lo - h, spacing h and dimensions N, on domain [lo, hi], and cell array
+ * `FarField`. vtkIPIAImplicitFunction takes it; vtkImageBSplineInterpolator of degree 3
+ * interpolates it.
  *
  * ### Two dimensions
  * If all points lie in a plane perpendicular to an axis and their normals in that plane, f is a
@@ -64,13 +66,15 @@
  *
  * ### Errors
  * Refused with one error and empty outputs: no points, one point, all points equal or (in 3-D) on a
- * line, no or only zero normals, grid sizes below 4, sample dimensions below 2, bounds that are empty
- * or hold no point, a step size that diverges, and sizes that the machine's memory would not hold.
- * Left out with one warning that counts them: non-finite points, weights or extra rows, zero or non-finite
- * normals (their offset rows), points outside ModelBounds. An abort leaves empty outputs.
+ * line, no or only zero normals, grid sizes below 4, sample dimensions below 2, bounds that are
+ * empty or hold no point, a step size that diverges, and sizes that the machine's memory would not
+ * hold. Left out with one warning that counts them: non-finite points, weights or extra rows, zero
+ * or non-finite normals (their offset rows), points outside ModelBounds. An abort leaves empty
+ * outputs.
  *
  * ### Threads and reproducibility
- * The fit runs on OpenMP threads (OMP_NUM_THREADS). Results do not depend on their number, bit for bit.
+ * The fit runs on OpenMP threads (OMP_NUM_THREADS). Results do not depend on their number, bit for
+ * bit.
  *
  * Y. F. Hamza, H. Lin, Z. Li: Implicit progressive-iterative approximation for curve and surface
  * reconstruction. Computer Aided Geometric Design 77, 2020.
@@ -116,8 +120,8 @@ public:
 
   ///@{
   /**
-   * Margin around the points of an automatic domain, as a multiple of their longest side; at least two
-   * knot spacings are taken. >= 0, default 0.05.
+   * Margin around the points of an automatic domain, as a multiple of their longest side; at least
+   * two knot spacings are taken. >= 0, default 0.05.
    */
   vtkSetClampMacro(Padding, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Padding, double);
@@ -125,10 +129,10 @@ public:
 
   ///@{
   /**
-   * Control coefficients N per axis ("grid size" in the papers), each >= 4, or 0: derived. If all are
-   * 0 (the default) the knot spacing is 1.6 times the point spacing, with at most 256 spacings along
-   * the longest side. In an automatic domain the spacing is the same on all axes and the upper end
-   * grows to a whole number of them; ModelBounds are kept exactly.
+   * Control coefficients N per axis ("grid size" in the papers), each >= 4, or 0: derived. If all
+   * are 0 (the default) the knot spacing is 1.6 times the point spacing, with at most 256 spacings
+   * along the longest side. In an automatic domain the spacing is the same on all axes and the
+   * upper end grows to a whole number of them; ModelBounds are kept exactly.
    */
   vtkSetVector3Macro(GridSize, int);
   vtkGetVector3Macro(GridSize, int);
@@ -215,7 +219,8 @@ public:
 
   ///@{
   /**
-   * Number of lattice levels. 1 (the default) is the papers' single level, and so far the only value.
+   * Number of lattice levels. 1 (the default) is the papers' single level, and so far the only
+   * value.
    */
   vtkSetClampMacro(NumberOfLevels, int, 1, 1);
   vtkGetMacro(NumberOfLevels, int);
@@ -223,7 +228,7 @@ public:
 
   ///@{
   /**
-   * Iterations at most. 0 (the default): 100.
+   * Iterations at most. 0 (the default): 100 progressive iterations, 15 of conjugate gradients.
    */
   vtkSetClampMacro(MaximumNumberOfIterations, int, 0, VTK_INT_MAX);
   vtkGetMacro(MaximumNumberOfIterations, int);
@@ -258,7 +263,8 @@ public:
   ///@{
   /**
    * Step size mu of ProgressiveIteration; it converges for 0 < mu < 2 / lambda_max(B^T W B), beyond
-   * that the fit is refused as soon as the energy rises. 0 (the default): 2 / max_i sum_k w_k B_i(x_k).
+   * that the fit is refused as soon as the energy rises. 0 (the default): 2 / max_i sum_k w_k
+   * B_i(x_k).
    */
   vtkSetClampMacro(StepSize, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(StepSize, double);
@@ -275,8 +281,8 @@ public:
 
   ///@{
   /**
-   * Add the support of f to output 0 as `Support`: the density of rows sum_i B_i(x) sum_k B_i(x_k) over
-   * its median at the points, 1 where data are typical, 0 far from them. Default off.
+   * Add the support of f to output 0 as `Support`: the density of rows sum_i B_i(x) sum_k B_i(x_k)
+   * over its median at the points, 1 where data are typical, 0 far from them. Default off.
    */
   vtkSetMacro(GenerateSupport, bool);
   vtkGetMacro(GenerateSupport, bool);
@@ -295,14 +301,15 @@ public:
 
   ///@{
   /**
-   * Results of the last fit, also in the field data of output 0, there under their names without "Get",
-   * with the array `ResidualHistory` of ||B^T W r|| / ||B^T W r0|| before the first and after every
-   * iteration. All are 0 after a refused fit.
+   * Results of the last fit, also in the field data of output 0, there under their names without
+   * "Get", with the array `ResidualHistory` of ||B^T W r|| / ||B^T W r0|| before the first and
+   * after every iteration. All are 0 after a refused fit.
    *
-   * StepSizeUsed is 0 with ConjugateGradient. Energy is E = sum_k w_k r_k^2 over all rows; AverageError
-   * and MaximumError are the mean of f^2 and the maximum of |f| at the points; Oscillation is R(C), the
-   * sum over coefficients of the squared differences to their axis neighbours. OffsetDistanceUsed is
-   * the distance that was aimed at, before rows were drawn nearer to their points.
+   * StepSizeUsed is 0 with ConjugateGradient. Energy is E = sum_k w_k r_k^2 over all rows;
+   * AverageError and MaximumError are the mean of f^2 and the maximum of |f| at the points;
+   * Oscillation is R(C), the sum over coefficients of the squared differences to their axis
+   * neighbours. OffsetDistanceUsed is the distance that was aimed at, before rows were drawn nearer
+   * to their points.
    */
   vtkGetMacro(NumberOfIterationsUsed, int);
   vtkGetMacro(StepSizeUsed, double);
@@ -316,8 +323,8 @@ public:
   ///@}
 
   /**
-   * The fit as a function, exact anywhere; brought up to date by Update(). It belongs to the filter and
-   * is without a lattice before the first and after a refused fit.
+   * The fit as a function, exact anywhere; brought up to date by Update(). It belongs to the filter
+   * and is without a lattice before the first and after a refused fit.
    */
   vtkIPIAImplicitFunction* GetImplicitFunction();
 

@@ -3,19 +3,21 @@
  * @class   vtkIPIAImplicitFunction
  * @brief   the fitted implicit B-spline function, exact at any point
  *
- * vtkIPIAImplicitFunction evaluates the function f that vtkIPIAImplicitFitter fits, without sampling:
+ * vtkIPIAImplicitFunction evaluates the function f that vtkIPIAImplicitFitter fits, without
+ * sampling:
  *
  *     f(x) = sum_i C_i B_i(x),
  *
- * with the tensor-product cubic B-splines B_i of the control lattice (eq. 3 and 5 of the paper named
- * below), and its exact gradient. f < 0 inside and f > 0 outside, as for every vtkImplicitFunction, so
- * it can be given to vtkClipPolyData, vtkCutter, vtkSampleFunction and vtkExtractGeometry as it is.
+ * with the tensor-product cubic B-splines B_i of the control lattice (eq. 3 and 5 of the paper
+ * named below), and its exact gradient. f < 0 inside and f > 0 outside, as for every
+ * vtkImplicitFunction, so it can be given to vtkClipPolyData, vtkCutter, vtkSampleFunction and
+ * vtkExtractGeometry as it is.
  *
- * It is obtained from a fitter (vtkIPIAImplicitFitter::GetImplicitFunction()) or built from a control
- * lattice, output 2 of the fitter, so that a fit can be written as .vti and read back.
+ * It is obtained from a fitter (vtkIPIAImplicitFitter::GetImplicitFunction()) or built from a
+ * control lattice, output 2 of the fitter, so that a fit can be written as .vti and read back.
  *
- * - Where no data supports the spline, f is a constant of the sign of that region (the far field, see
- *   vtkIPIAImplicitFitter); its gradient there is 0.
+ * - Where no data supports the spline, f is a constant of the sign of that region (the far field,
+ * see vtkIPIAImplicitFitter); its gradient there is 0.
  * - Outside the domain f is continued from the nearest point x' of the domain with the sign kept:
  *   f(x') + |x - x'| where f(x') >= 0, and f(x') - |x - x'| elsewhere.
  * - A function of a planar fit (2-D) ignores the coordinate across its plane.
@@ -47,10 +49,10 @@ public:
 
   /**
    * Take the function from a control lattice: point array `Coefficient` (one component, N_x N_y N_z
-   * values, N >= 4 on each axis but for one axis of 1 in 2-D), and where the fit has a far field the
-   * cell array `FarField` (f in knot cells without support, 0 where the spline counts). The domain is
-   * the lattice less one spacing at either end. A lattice that is not of this form is an error and
-   * leaves the function without one. nullptr removes the lattice. The values are copied.
+   * values, N >= 4 on each axis but for one axis of 1 in 2-D), and where the fit has a far field
+   * the cell array `FarField` (f in knot cells without support, 0 where the spline counts). The
+   * domain is the lattice less one spacing at either end. A lattice that is not of this form is an
+   * error and leaves the function without one. nullptr removes the lattice. The values are copied.
    */
   void SetControlLattice(vtkImageData* lattice);
 

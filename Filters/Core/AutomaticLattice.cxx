@@ -82,8 +82,8 @@ PlacedLattice<Dim> latticeAround(
       const double byPadding = (sides[a] + 2 * margin) / cells;
       const double free = cells - 2 * MarginInKnotSpacings;
       const double byMargin = free > 0 ? sides[a] / free : std::numeric_limits<double>::infinity();
-      h = std::max(
-        h, byMargin * MarginInKnotSpacings <= margin || free <= 0 ? byPadding : byMargin);
+      h =
+        std::max(h, byMargin * MarginInKnotSpacings <= margin || free <= 0 ? byPadding : byMargin);
     }
   }
   if (!(h > 0))

@@ -28,8 +28,8 @@ struct PlacedLattice
 };
 
 /**
- * The side of cubes (squares) of which the points occupy as many as there are distinct points: about
- * the spacing of points that cover a surface (curve) evenly. 0 if all points are equal.
+ * The side of cubes (squares) of which the points occupy as many as there are distinct points:
+ * about the spacing of points that cover a surface (curve) evenly. 0 if all points are equal.
  *
  * @param positions  Dim x n, inside the box
  */
@@ -43,11 +43,12 @@ constexpr double MarginInKnotSpacings = 2;
 /**
  * A lattice with one knot spacing for all axes, on a box enlarged by a margin.
  *
- * The margin is @a padding times the longest side, at least MarginInKnotSpacings spacings. The upper
- * end grows to a whole number of spacings.
+ * The margin is @a padding times the longest side, at least MarginInKnotSpacings spacings. The
+ * upper end grows to a whole number of spacings.
  *
  * @param size     coefficients per axis, each >= 4, or 0 where it follows from the spacing
- * @param spacing  the spacing to use where all sizes are 0, > 0; otherwise it follows from the sizes
+ * @param spacing  the spacing to use where all sizes are 0, > 0; otherwise it follows from the
+ * sizes
  */
 template <int Dim>
 PlacedLattice<Dim> latticeAround(

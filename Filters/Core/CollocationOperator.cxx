@@ -49,7 +49,8 @@ struct TileKernel
           {
             const double* at = coefficients + cell->Coefficient + k * stride[1] + 2 * p * stride[0];
             std::memcpy(&c[k][p], at, 4 * sizeof(double));
-            std::memcpy(reinterpret_cast<double*>(&c[k][p]) + 4, at + stride[0], 4 * sizeof(double));
+            std::memcpy(
+              reinterpret_cast<double*>(&c[k][p]) + 4, at + stride[0], 4 * sizeof(double));
           }
         }
       }
@@ -78,8 +79,8 @@ struct TileKernel
             g1 += z[k] * c[k][1];
           }
           const Vector8 g = g0 * yx[0] + g1 * yx[1];
-          const Vector4 half = __builtin_shufflevector(g, g, 0, 1, 2, 3) +
-            __builtin_shufflevector(g, g, 4, 5, 6, 7);
+          const Vector4 half =
+            __builtin_shufflevector(g, g, 0, 1, 2, 3) + __builtin_shufflevector(g, g, 4, 5, 6, 7);
           const double f = (half[0] + half[2]) + (half[1] + half[3]);
           if (Kind == Product::Residual)
           {
@@ -134,8 +135,7 @@ double CollocationOperator<Dim>::sweep(const double* coefficients, Vector& resul
   parallelChunks(result.size(), this->Threads,
     [&](std::int64_t begin, std::int64_t end) { result.segment(begin, end - begin).setZero(); });
 
-  const std::array<std::int64_t, 2> stride = { lattice.Size[0],
-    lattice.Size[0] * lattice.Size[1] };
+  const std::array<std::int64_t, 2> stride = { lattice.Size[0], lattice.Size[0] * lattice.Size[1] };
   std::vector<double> energies(static_cast<std::size_t>(this->Rows.numberOfTiles()), 0.0);
   double* const out = result.data();
 #pragma omp parallel num_threads(this->Threads)

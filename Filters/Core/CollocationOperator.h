@@ -3,9 +3,9 @@
  * @file
  * Products with the collocation matrix B of a set of rows, without forming it.
  *
- * A row touches 4^Dim coefficients. Rows are taken cell by cell: a cell's coefficients are read once,
- * its contributions written once, and the basis of a row is rebuilt from its local coordinates, which
- * costs less than reading it. W is the diagonal matrix of the row weights.
+ * A row touches 4^Dim coefficients. Rows are taken cell by cell: a cell's coefficients are read
+ * once, its contributions written once, and the basis of a row is rebuilt from its local
+ * coordinates, which costs less than reading it. W is the diagonal matrix of the row weights.
  */
 #ifndef ipia_CollocationOperator_h
 #define ipia_CollocationOperator_h

@@ -12,7 +12,8 @@
 
 namespace ipia
 {
-/// One row: f(x) = Target with a least-squares weight, x given by its local coordinate in a knot cell.
+/// One row: f(x) = Target with a least-squares weight, x given by its local coordinate in a knot
+/// cell.
 template <int Dim>
 struct ConstraintRow
 {
@@ -24,9 +25,9 @@ struct ConstraintRow
 /**
  * Rows sorted by knot cell, and the cells grouped in tiles for threads.
  *
- * A tile is a bar along x of TileWidth cells on every other axis. Tiles of one colour touch disjoint
- * coefficients, so the threads that work on them need no lock, and every coefficient collects its
- * contributions in the same order whatever their number.
+ * A tile is a bar along x of TileWidth cells on every other axis. Tiles of one colour touch
+ * disjoint coefficients, so the threads that work on them need no lock, and every coefficient
+ * collects its contributions in the same order whatever their number.
  */
 template <int Dim>
 class ConstraintRows

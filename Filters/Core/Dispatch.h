@@ -37,9 +37,7 @@ inline InstructionSet instructionSet()
     const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-    return avx512 ? InstructionSet::Avx512
-      : avx2      ? InstructionSet::Avx2
-                  : InstructionSet::Baseline;
+    return avx512 ? InstructionSet::Avx512 : avx2 ? InstructionSet::Avx2 : InstructionSet::Baseline;
   }();
   return best;
 }

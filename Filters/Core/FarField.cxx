@@ -219,8 +219,8 @@ void flipUnvouchedRegions(const Lattice<Dim>& lattice, const Vector& coefficient
       continue;
     }
     const Index<Dim> cell = cells.position(c);
-    int flip = 0;            // the sign of the unvouched nodes, negated
-    bool ambiguous = false;  // a vouched node of their sign, or unvouched ones of both
+    int flip = 0;              // the sign of the unvouched nodes, negated
+    bool ambiguous = false;    // a vouched node of their sign, or unvouched ones of both
     std::array<int, 3> seen{}; // whether vouched nodes of sign -1 and +1 occur
     int strides = 1;
     for (int a = 0; a < Dim; ++a)

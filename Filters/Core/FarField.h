@@ -3,10 +3,10 @@
  * @file
  * What f is where no data say it.
  *
- * With a zero start, coefficients that no row touches stay 0, and around the band of data f decays to
- * 0 with arbitrary sign. Contour filters count 0 as outside, so that the inner rim of the band would
- * become a second sheet, and ripples beside it would become bubbles. The far field gives such knot
- * cells a constant of the right sign.
+ * With a zero start, coefficients that no row touches stay 0, and around the band of data f decays
+ * to 0 with arbitrary sign. Contour filters count 0 as outside, so that the inner rim of the band
+ * would become a second sheet, and ripples beside it would become bubbles. The far field gives such
+ * knot cells a constant of the right sign.
  */
 #ifndef ipia_FarField_h
 #define ipia_FarField_h
@@ -42,18 +42,19 @@ struct FarFieldOptions
 
 /// The median over the points of the support s(x) = sum_i B_i(x) S_i; 0 without points.
 template <int Dim>
-double medianSupport(const Lattice<Dim>& lattice, const Vector& support,
-  const Points<Dim>& dataPoints, int threads);
+double medianSupport(
+  const Lattice<Dim>& lattice, const Vector& support, const Points<Dim>& dataPoints, int threads);
 
 /**
  * Finds the cells where the spline does not count, in two steps.
  *
- * 1. Cells without support: s(x) = sum_i B_i(x) S_i with S_i = sum_k B_i(x_k) over all rows, scaled so
- *    that its median at the data points is 1, is below the threshold at the centre. Each connected
+ * 1. Cells without support: s(x) = sum_i B_i(x) S_i with S_i = sum_k B_i(x_k) over all rows, scaled
+ * so that its median at the data points is 1, is below the threshold at the centre. Each connected
  *    region of them takes the sign of the larger share of the supported cells around it.
- * 2. Signs that nothing vouches for: on the grid of half knot spacings, a connected region where f > 0
- *    must hold a position just outside some data point, one where f < 0 a position just inside;
- *    otherwise the cells of that region take the opposite sign, but for those that hold data points.
+ * 2. Signs that nothing vouches for: on the grid of half knot spacings, a connected region where f
+ * > 0 must hold a position just outside some data point, one where f < 0 a position just inside;
+ *    otherwise the cells of that region take the opposite sign, but for those that hold data
+ * points.
  *
  * @param support       S, scaled, lattice.numberOfCoefficients() values
  * @param coefficients  of f

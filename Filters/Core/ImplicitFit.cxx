@@ -22,7 +22,8 @@ ConstraintRows<Dim> makeRows(const Lattice<Dim>& lattice, const FitInput<Dim>& i
     weights[used] = weight;
     ++used;
   };
-  const auto weightOf = [&](std::int64_t k) { return input.Weights.size() ? input.Weights[k] : 1.0; };
+  const auto weightOf = [&](std::int64_t k)
+  { return input.Weights.size() ? input.Weights[k] : 1.0; };
   const auto appendOffsets = [&](const Vector& distance, double value, double side)
   {
     for (std::int64_t k = 0; k < distance.size(); ++k)
@@ -130,8 +131,8 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
     const double probe = WitnessDistance * lattice.Spacing.maxCoeff();
     const Points<Dim> outside = withExtra<Dim>(input, input.Positions + probe * input.Normals, 1);
     const Points<Dim> inside = withExtra<Dim>(input, input.Positions - probe * input.Normals, -1);
-    far = computeFarField(
-      lattice, support, coefficients, outside, inside, input.Positions, farOptions);
+    far =
+      computeFarField(lattice, support, coefficients, outside, inside, input.Positions, farOptions);
   }
 
   FitResult<Dim> result{ ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)),

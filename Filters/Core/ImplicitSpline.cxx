@@ -29,8 +29,7 @@ AxisTable makeAxisTable(
   table.Weight.reserve(positions.size());
   for (double x : positions)
   {
-    const AxisLocation at =
-      lattice.locate(std::min(std::max(x, 0.0), lattice.extent(axis)), axis);
+    const AxisLocation at = lattice.locate(std::min(std::max(x, 0.0), lattice.extent(axis)), axis);
     BasisValues w = cubicBasisDerivative(at.T, derivative ? 1 : 0);
     if (derivative)
     {
@@ -129,8 +128,8 @@ struct SampleKernel
   using Grid = SampleGrid<Dim>;
 
   /// Slice k of the coefficients, expanded to the samples of the block along x and y.
-  static IPIA_INLINE void expandSlice(const Grid& grid, const SampleBlock& block, std::int64_t slice,
-    std::vector<double>& alongX, double* expanded)
+  static IPIA_INLINE void expandSlice(const Grid& grid, const SampleBlock& block,
+    std::int64_t slice, std::vector<double>& alongX, double* expanded)
   {
     const std::int64_t n = grid.X.size();
     const std::int64_t firstRow = grid.Y.Cell[static_cast<std::size_t>(block.FirstY)];
@@ -150,8 +149,7 @@ struct SampleKernel
     }
     for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
     {
-      const double* in =
-        alongX.data() + (grid.Y.Cell[static_cast<std::size_t>(y)] - firstRow) * n;
+      const double* in = alongX.data() + (grid.Y.Cell[static_cast<std::size_t>(y)] - firstRow) * n;
       const BasisValues w = grid.Y.Weight[static_cast<std::size_t>(y)];
       double* out = expanded + (y - block.FirstY) * n;
       for (std::int64_t x = 0; x < n; ++x)
@@ -209,14 +207,13 @@ struct SampleKernel
                          *d = slices[3 % Grid::Slices] + offset;
             for (std::int64_t x = part.Begin; x < part.End; ++x)
             {
-              out[x] =
-                static_cast<Scalar>(w[0] * a[x] + w[1] * b[x] + w[2] * c[x] + w[3] * d[x]);
+              out[x] = static_cast<Scalar>(w[0] * a[x] + w[1] * b[x] + w[2] * c[x] + w[3] * d[x]);
             }
           }
           else
           {
-            std::copy(slices[0] + offset + part.Begin, slices[0] + offset + part.End,
-              out + part.Begin);
+            std::copy(
+              slices[0] + offset + part.Begin, slices[0] + offset + part.End, out + part.Begin);
           }
         }
       }
@@ -277,8 +274,8 @@ double ImplicitSpline<Dim>::splineSum(
     {
       const double* c =
         base + (static_cast<std::int64_t>(k) * size[1] + static_cast<std::int64_t>(j)) * size[0];
-      sum += w[2][k] * w[1][j] *
-        (w[0][0] * c[0] + w[0][1] * c[1] + w[0][2] * c[2] + w[0][3] * c[3]);
+      sum +=
+        w[2][k] * w[1][j] * (w[0][0] * c[0] + w[0][1] * c[1] + w[0][2] * c[2] + w[0][3] * c[3]);
     }
   }
   return derivativeAxis < 0 ? sum : sum / this->ControlLattice.Spacing[derivativeAxis];
@@ -323,8 +320,8 @@ bool ImplicitSpline<Dim>::sample(const AxisPositions<Dim>& positions, Scalar* va
   grid.Z = { { 0 }, { BasisValues{ 1 } } };
   if (Dim == 3)
   {
-    grid.Z = makeAxisTable(
-      this->ControlLattice, Dim - 1, positions[Dim - 1], derivativeAxis == Dim - 1);
+    grid.Z =
+      makeAxisTable(this->ControlLattice, Dim - 1, positions[Dim - 1], derivativeAxis == Dim - 1);
   }
   grid.makeRuns();
 

@@ -19,8 +19,8 @@ using AxisPositions = std::array<std::vector<double>, Dim>;
 
 /**
  * f(x) = sum_i c_i B_i(x) on the domain, the constant of the far field in its cells, and beyond the
- * domain a continuation that keeps the sign: f at the nearest point of the domain, moved away from 0
- * by the distance to it.
+ * domain a continuation that keeps the sign: f at the nearest point of the domain, moved away from
+ * 0 by the distance to it.
  */
 template <int Dim>
 class ImplicitSpline

@@ -3,9 +3,10 @@
  * @file
  * The control lattice of a uniform tensor-product cubic B-spline.
  *
- * The domain is [0, extent] per axis, relative to its lower corner. An axis with N >= 4 coefficients
- * has N - 3 knot cells of width h = extent / (N - 3). Coefficient i (from 0) belongs to the cardinal
- * cubic B-spline centred at (i - 1) h with support 4 h; knot cell c sees the coefficients c .. c + 3.
+ * The domain is [0, extent] per axis, relative to its lower corner. An axis with N >= 4
+ * coefficients has N - 3 knot cells of width h = extent / (N - 3). Coefficient i (from 0) belongs
+ * to the cardinal cubic B-spline centred at (i - 1) h with support 4 h; knot cell c sees the
+ * coefficients c .. c + 3.
  */
 #ifndef ipia_Lattice_h
 #define ipia_Lattice_h

@@ -38,7 +38,8 @@ public:
   void scaleAndAdd(double a, const Vector& x, Vector& y) const
   {
     parallelChunks(y.size(), this->Threads,
-      [&](std::int64_t begin, std::int64_t end) {
+      [&](std::int64_t begin, std::int64_t end)
+      {
         y.segment(begin, end - begin) =
           x.segment(begin, end - begin) + a * y.segment(begin, end - begin);
       });

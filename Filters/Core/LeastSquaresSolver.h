@@ -3,8 +3,9 @@
  * @file
  * The two solvers of min_c sum_k w_k (b_k - (Bc)_k)^2.
  *
- * Both start from the given coefficients c0 and stay in c0 + range(B^T), hence share their limit: the
- * least-squares solution nearest to c0, which for c0 = 0 is the one of least norm, (B^T W B)^+ B^T W b.
+ * Both start from the given coefficients c0 and stay in c0 + range(B^T), hence share their limit:
+ * the least-squares solution nearest to c0, which for c0 = 0 is the one of least norm, (B^T W B)^+
+ * B^T W b.
  */
 #ifndef ipia_LeastSquaresSolver_h
 #define ipia_LeastSquaresSolver_h

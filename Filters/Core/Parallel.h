@@ -21,8 +21,8 @@ inline int resolveThreads(int requested)
   return requested > 0 ? requested : omp_get_max_threads();
 }
 
-/// Coefficients that one task of a vector operation owns. A constant, so that sums are grouped alike
-/// for any number of threads.
+/// Coefficients that one task of a vector operation owns. A constant, so that sums are grouped
+/// alike for any number of threads.
 constexpr std::int64_t VectorChunk = 8192;
 
 /// Calls body(begin, end) for fixed chunks of [0, n).

@@ -3,8 +3,9 @@
  * @file
  * The few types that every part of the core shares.
  *
- * Dim is 2 or 3 throughout. All lengths in the core are in the caller's units, all positions relative
- * to the corner lo of the domain, in double, so that data far from the origin lose no digits.
+ * Dim is 2 or 3 throughout. All lengths in the core are in the caller's units, all positions
+ * relative to the corner lo of the domain, in double, so that data far from the origin lose no
+ * digits.
  */
 #ifndef ipia_Types_h
 #define ipia_Types_h
