@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BrickLattice.h"
+
+#include "Parallel.h"
+
+#include <bitset>
+
+namespace ipia
+{
+namespace
+{
+/// Calls action with every index of a box, x fastest.
+template <int Dim, typename Action>
+void forBox(const Index<Dim>& first, const Index<Dim>& last, const Action& action)
+{
+  Index<Dim> i = first;
+  for (;;)
+  {
+    action(i);
+    int a = 0;
+    while (a < Dim && ++i[a] > last[a])
+    {
+      i[a] = first[a];
+      ++a;
+    }
+    if (a == Dim)
+    {
+      return;
+    }
+  }
+}
+
+/// The bits of a brick whose coordinate along an axis lies in [first, last] (0 to 3).
+template <int Dim>
+std::uint64_t slab(int axis, std::int64_t first, std::int64_t last)
+{
+  std::uint64_t bits = 0;
+  for (int k = 0; k < BrickSize<Dim>; ++k)
+  {
+    const int at = k >> (2 * axis) & 3;
+    bits |= std::uint64_t{ at >= first && at <= last } << k;
+  }
+  return bits;
+}
+
+/// slab() for all arguments.
+template <int Dim>
+struct SlabTable
+{
+  std::uint64_t Bits[Dim][BrickWidth][BrickWidth];
+
+  SlabTable()
+  {
+    for (int a = 0; a < Dim; ++a)
+    {
+      for (int first = 0; first < BrickWidth; ++first)
+      {
+        for (int last = 0; last < BrickWidth; ++last)
+        {
+          this->Bits[a][first][last] = slab<Dim>(a, first, last);
+        }
+      }
+    }
+  }
+
+  static const SlabTable& instance()
+  {
+    static const SlabTable table;
+    return table;
+  }
+};
+}
+
+template <int Dim>
+BrickLattice<Dim>::BrickLattice(const Lattice<Dim>& lattice)
+  : Grid(lattice)
+{
+  std::int64_t total = 1;
+  for (int a = 0; a < Dim; ++a)
+  {
+    this->BrickCount[a] = (lattice.Size[a] + BrickWidth - 1) / BrickWidth;
+    total *= this->BrickCount[a];
+  }
+  this->Map.assign(static_cast<std::size_t>(total), Absent);
+}
+
+template <int Dim>
+void BrickLattice<Dim>::activateAll()
+{
+  Index<Dim> last = this->BrickCount;
+  for (auto& n : last)
+  {
+    --n;
+  }
+  forBox<Dim>(Index<Dim>{}, last,
+    [this](const Index<Dim>& brick)
+    {
+      std::uint64_t mask = ~std::uint64_t{ 0 };
+      for (int a = 0; a < Dim; ++a)
+      {
+        const std::int64_t end =
+          std::min<std::int64_t>(this->Grid.Size[a] - brick[a] * BrickWidth, BrickWidth);
+        mask &= SlabTable<Dim>::instance().Bits[a][0][end - 1];
+      }
+      this->Map[this->flatBrick(brick)] = static_cast<std::int32_t>(this->Marks.size());
+      this->Marks.push_back(mask);
+    });
+}
+
+template <int Dim>
+void BrickLattice<Dim>::activateAround(const Index<Dim>& cell)
+{
+  Index<Dim> low, high, first, last;
+  for (int a = 0; a < Dim; ++a)
+  {
+    low[a] = std::max<std::int64_t>(cell[a] - 1, 0);
+    high[a] = std::min(cell[a] + Order, this->Grid.Size[a] - 1);
+    first[a] = low[a] / BrickWidth;
+    last[a] = high[a] / BrickWidth;
+  }
+  forBox<Dim>(first, last,
+    [&](const Index<Dim>& brick)
+    {
+      std::uint64_t mask = ~std::uint64_t{ 0 };
+      for (int a = 0; a < Dim; ++a)
+      {
+        const std::int64_t from = std::max<std::int64_t>(low[a] - brick[a] * BrickWidth, 0);
+        const std::int64_t to =
+          std::min<std::int64_t>(high[a] - brick[a] * BrickWidth, BrickWidth - 1);
+        mask &= SlabTable<Dim>::instance().Bits[a][from][to];
+      }
+      std::int32_t& id = this->Map[this->flatBrick(brick)];
+      if (id == Absent)
+      {
+        id = static_cast<std::int32_t>(this->Marks.size());
+        this->Marks.push_back(0);
+      }
+      this->Marks[static_cast<std::size_t>(id)] |= mask;
+    });
+}
+
+template <int Dim>
+void BrickLattice<Dim>::storeAroundActive()
+{
+  const std::vector<std::int32_t> before = this->Map;
+  Index<Dim> end = this->BrickCount;
+  for (auto& n : end)
+  {
+    --n;
+  }
+  forBox<Dim>(Index<Dim>{}, end,
+    [&](const Index<Dim>& brick)
+    {
+      const std::int32_t id = before[this->flatBrick(brick)];
+      if (id == Absent || this->Marks[static_cast<std::size_t>(id)] == 0)
+      {
+        return;
+      }
+      Index<Dim> first, last;
+      for (int a = 0; a < Dim; ++a)
+      {
+        first[a] = std::max<std::int64_t>(brick[a] - 1, 0);
+        last[a] = std::min(brick[a] + 1, this->BrickCount[a] - 1);
+      }
+      forBox<Dim>(first, last,
+        [&](const Index<Dim>& neighbour)
+        {
+          std::int32_t& mark = this->Map[this->flatBrick(neighbour)];
+          if (mark == Absent)
+          {
+            mark = static_cast<std::int32_t>(this->Marks.size());
+            this->Marks.push_back(0);
+          }
+        });
+    });
+}
+
+template <int Dim>
+void BrickLattice<Dim>::storeForRefinement(const BrickLattice& finer)
+{
+  for (const Index<Dim>& brick : finer.Position)
+  {
+    // Fine coefficients 4b .. 4b + 3 read the coarse ones 2b .. 2b + 3.
+    Index<Dim> first, last;
+    for (int a = 0; a < Dim; ++a)
+    {
+      first[a] = std::min(2 * brick[a] / BrickWidth, this->BrickCount[a] - 1);
+      last[a] = std::min((2 * brick[a] + 3) / BrickWidth, this->BrickCount[a] - 1);
+    }
+    forBox<Dim>(first, last,
+      [this](const Index<Dim>& coarse)
+      {
+        std::int32_t& mark = this->Map[this->flatBrick(coarse)];
+        if (mark == Absent)
+        {
+          mark = static_cast<std::int32_t>(this->Marks.size());
+          this->Marks.push_back(0);
+        }
+      });
+  }
+}
+
+template <int Dim>
+void BrickLattice<Dim>::allocate()
+{
+  Index<Dim> end = this->BrickCount;
+  for (auto& n : end)
+  {
+    --n;
+  }
+  std::vector<std::uint64_t> marks;
+  marks.swap(this->Marks);
+  std::vector<std::int32_t> map(this->Map.size(), Absent);
+  for (const bool active : { true, false })
+  {
+    forBox<Dim>(Index<Dim>{}, end,
+      [&](const Index<Dim>& brick)
+      {
+        const std::size_t flat = this->flatBrick(brick);
+        const std::int32_t mark = this->Map[flat];
+        if (mark != Absent && (marks[static_cast<std::size_t>(mark)] != 0) == active)
+        {
+          map[flat] = static_cast<std::int32_t>(this->Position.size());
+          this->Position.push_back(brick);
+          this->Mask.push_back(marks[static_cast<std::size_t>(mark)]);
+        }
+      });
+    if (active)
+    {
+      this->ActiveCount = static_cast<std::int32_t>(this->Position.size());
+    }
+  }
+  this->Map.swap(map);
+  this->Neighbours.resize(this->Position.size());
+  for (std::size_t b = 0; b < this->Position.size(); ++b)
+  {
+    for (int k = 0; k < NeighbourCount; ++k)
+    {
+      Index<Dim> neighbour = this->Position[b];
+      for (int a = 0, rest = k; a < Dim; ++a, rest /= 3)
+      {
+        neighbour[a] += rest % 3 - 1;
+      }
+      this->Neighbours[b][static_cast<std::size_t>(k)] = this->brickAt(neighbour);
+    }
+  }
+  this->Coefficients.assign(this->Position.size() * BrickSize<Dim>, 0.0F);
+}
+
+template <int Dim>
+std::int64_t BrickLattice<Dim>::numberOfActiveCoefficients() const
+{
+  std::int64_t n = 0;
+  for (std::int32_t b = 0; b < this->ActiveCount; ++b)
+  {
+    n += static_cast<std::int64_t>(std::bitset<64>(this->activeMask(b)).count());
+  }
+  return n;
+}
+
+template <int Dim>
+void BrickLattice<Dim>::refineFrom(const BrickLattice& coarser, int threads)
+{
+  // Coarse coefficients 2b .. 2b + 3 of an axis give the four fine ones of brick b.
+  const auto refineAxis = [](const float* in, float* out, int stride, int before, int after)
+  {
+    for (int o = 0; o < after; ++o)
+    {
+      for (int i = 0; i < before; ++i)
+      {
+        const float* c = in + o * BrickWidth * stride + i;
+        float* f = out + o * BrickWidth * stride + i;
+        f[0] = 0.5F * (c[0] + c[stride]);
+        f[stride] = 0.125F * (c[0] + c[2 * stride]) + 0.75F * c[stride];
+        f[2 * stride] = 0.5F * (c[stride] + c[2 * stride]);
+        f[3 * stride] = 0.125F * (c[stride] + c[3 * stride]) + 0.75F * c[2 * stride];
+      }
+    }
+  };
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (std::int32_t b = 0; b < this->numberOfBricks(); ++b)
+  {
+    const Index<Dim>& brick = this->position(b);
+    float read[BrickSize<Dim>];
+    for (int k = 0; k < BrickSize<Dim>; ++k)
+    {
+      Index<Dim> at;
+      int inside = 0;
+      for (int a = 0; a < Dim; ++a)
+      {
+        // Fine coefficients beyond the lattice may ask for coarse ones beyond it; they do not
+        // count.
+        const std::int64_t c =
+          std::min(2 * brick[a] + (k >> (2 * a) & 3), coarser.Grid.Size[a] - 1);
+        at[a] = c / BrickWidth;
+        inside |= static_cast<int>(c % BrickWidth) << (2 * a);
+      }
+      const std::int32_t id = coarser.brickAt(at);
+      read[k] = coarser.Coefficients[static_cast<std::size_t>(id) * BrickSize<Dim> +
+        static_cast<std::size_t>(inside)];
+    }
+    float first[BrickSize<Dim>];
+    float* out = this->Coefficients.data() + static_cast<std::int64_t>(b) * BrickSize<Dim>;
+    refineAxis(read, first, 1, 1, BrickSize<Dim> / 4);
+    if (Dim == 2)
+    {
+      refineAxis(first, out, 4, 4, 1);
+    }
+    else
+    {
+      refineAxis(first, read, 4, 4, 4);
+      refineAxis(read, out, 16, 16, 1);
+    }
+  }
+}
+
+template <int Dim>
+bool BrickLattice<Dim>::covers(const Index<Dim>& cell) const
+{
+  bool covered = true;
+  Index<Dim> first, last;
+  for (int a = 0; a < Dim; ++a)
+  {
+    first[a] = cell[a] / BrickWidth;
+    last[a] = (cell[a] + Order - 1) / BrickWidth;
+  }
+  forBox<Dim>(first, last,
+    [&](const Index<Dim>& brick) { covered = covered && this->brickAt(brick) != Absent; });
+  return covered;
+}
+
+template class BrickLattice<2>;
+template class BrickLattice<3>;
+}

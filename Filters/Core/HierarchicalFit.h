@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Hierarchical I-PIA: the fit on lattices of halving spacing, coarse to fine.
+ *
+ * Each level starts from the exact knot refinement of the one before and solves the least-squares
+ * problem of its rows (f = 0 and grad f = n at the points, f = v at extra rows) by conjugate
+ * gradients; its limit is the solution nearest to the coarser prediction. Coarse levels are dense
+ * and solved to convergence with fairing energies, so that f is defined everywhere and fills holes;
+ * fine levels correct a narrow band around the data. Coarser levels see clusters of points.
+ */
+#ifndef ipia_HierarchicalFit_h
+#define ipia_HierarchicalFit_h
+
+#include "BrickLattice.h"
+#include "ImplicitSpline.h"
+
+#include <vector>
+
+namespace ipia
+{
+/// What is to be fitted; positions are relative to the lower corner of the domain and inside it.
+template <int Dim>
+struct HermiteInput
+{
+  Points<Dim> Positions; ///< Dim x n
+  Points<Dim> Normals;   ///< Dim x n, unit length, towards f > 0; a zero column has no gradient row
+  Vector Weights;        ///< n, >= 0; empty: 1
+
+  Points<Dim> ExtraPositions; ///< Dim x m: points of weight 1 ...
+  Vector ExtraValues;         ///< ... where f shall take these values
+};
+
+/// The constants of the method; lengths in knot spacings of the level, weights without unit.
+struct HierarchicalOptions
+{
+  int NumberOfLevels =
+    0;                 ///< 0: until the coarsest has no more than 16 cells along its longest side
+  int DenseCells = 32; ///< levels with no more cells along their longest side are dense
+
+  /// Share of the gradient rows, g: h grad f = h n has the weight g^2 of f = 0.
+  double DenseGradient = 1, BandGradient = 0.3, FinestGradient = 0.2;
+  double DenseMembrane = 0.01;  ///< tau_1 of the dense levels
+  double DenseThinPlate = 1e-3; ///< tau_2 of the dense levels
+  double BandThinPlate = 3e-4;  ///< tau_2 of the others
+  int DenseIterations = 80;
+  double DenseTolerance = 1e-5;
+  int BandIterations = 12;
+  int FinestIterations = 12;
+  double BandTolerance = 1e-3;
+  /// Residuals beyond this many standard deviations of the coarser prediction lose weight.
+  double RobustFactor = 4;
+  int Threads = 0;
+};
+
+/// What one level did.
+struct LevelReport
+{
+  double Spacing = 0;
+  std::int64_t NumberOfRows = 0;
+  std::int64_t NumberOfActiveCoefficients = 0;
+  int NumberOfIterations = 0;
+  double RelativeResidual = 0;
+  double Seconds = 0;
+};
+
+template <int Dim>
+struct HierarchicalResult
+{
+  bool Aborted = false;
+  std::vector<BrickLattice<Dim>> Levels; ///< coarse to fine
+  std::vector<LevelReport> Reports;
+};
+
+/// @param lattice  the finest lattice
+template <int Dim>
+HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input,
+  const HierarchicalOptions& options, const ProgressCallback& progress = {});
+
+/// The function of all levels as one spline on the finest lattice, exactly.
+template <int Dim>
+Vector assembleCoefficients(const std::vector<BrickLattice<Dim>>& levels);
+}
+
+#endif
