@@ -6,6 +6,9 @@
 #include "Parallel.h"
 
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
 
 namespace ipia
 {
@@ -244,6 +247,21 @@ std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels)
 }
 
 template <int Dim>
+double occupiedCells(const Level<Dim>& level)
+{
+  double count = 0;
+  Index<Dim> last;
+  last.fill(-1);
+  for (const Sample<Dim>& sample : level.Samples)
+  {
+    const Index<Dim> cell = level.cellOf(sample);
+    count += cell != last;
+    last = cell;
+  }
+  return count;
+}
+
+template <int Dim>
 HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, double gradient)
 {
   HermiteRows<Dim> rows;
@@ -431,6 +449,202 @@ void solveLevel(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int
   }
   report.RelativeResidual = first > 0 ? std::sqrt(rz / first) : 0;
 }
+
+/// Occupied cells hold at least this many points where the data alone determine f.
+constexpr double PointsPerDeterminedCell = 3;
+/// Data are noisy if on such a level the points miss the surface by more than this many knot
+/// spacings, and the level before did not miss it by much more: detail that a coarse lattice cannot
+/// follow falls by the power of its order from level to level, noise stays.
+constexpr double NoiseGate = 0.05, NoiseFall = 0.5;
+/// Slopes of f below this do not count as slopes when distances are estimated.
+constexpr double LeastSlope = 0.2;
+/// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
+constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
+/// Cross-validation: every so many'th point is held out and levels up to so many cells are fitted,
+/// in fewer iterations. It starts from this many point spacings and goes in factors of the square
+/// root of two; the shortest length is taken that predicts within a percent of the best.
+constexpr std::int64_t HeldOutPeriod = 8;
+constexpr std::int64_t ValidationCells = 64;
+constexpr int ValidationIterations = 8, MostValidations = 5;
+constexpr double FirstSmoothing = 2.4, ValidationStep = 1.41421356, ValidationSlack = 1.01;
+/// Squared errors of predicted normals are cut here, so that outliers do not decide.
+constexpr double MostNormalError = 2;
+
+template <int Dim>
+std::int64_t longestAxis(const Lattice<Dim>& lattice)
+{
+  std::int64_t cells = 0;
+  for (int a = 0; a < Dim; ++a)
+  {
+    cells = std::max(cells, lattice.cells(a));
+  }
+  return cells;
+}
+
+/// Solves level @a l from its predecessor.
+template <int Dim>
+LevelReport solveOne(const std::vector<Level<Dim>>& levels, std::vector<BrickLattice<Dim>>& bricks,
+  std::size_t l, double smoothing, const HierarchicalOptions& options, int threads)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const Level<Dim>& level = levels[l];
+  const bool finest = l + 1 == levels.size();
+  if (l > 0)
+  {
+    bricks[l].refineFrom(bricks[l - 1], threads);
+  }
+  else
+  {
+    std::fill(bricks[l].coefficients().begin(), bricks[l].coefficients().end(), 0.F);
+  }
+  const double relative = smoothing / level.Grid.Spacing.mean();
+  const double gradient = level.Dense ? options.DenseGradient
+    : finest                          ? options.FinestGradient
+                                      : options.BandGradient;
+  HermiteRows<Dim> rows =
+    makeRows(level, bricks[l], std::max(gradient, std::min(relative, MostSmoothingGradient)));
+  weighRows(bricks[l], rows, l > 0, options, threads);
+  FairingWeights fairing;
+  fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : 0);
+  fairing.ThinPlate =
+    static_cast<float>(std::max(level.Dense ? options.DenseThinPlate : options.BandThinPlate,
+      SmoothingThinPlate * relative * relative * relative));
+  const BrickOperator<Dim> system(bricks[l], rows, fairing, threads);
+
+  LevelReport report;
+  report.Spacing = level.Grid.Spacing.maxCoeff();
+  report.NumberOfRows = static_cast<std::int64_t>(rows.Rows.size());
+  report.NumberOfActiveCoefficients = bricks[l].numberOfActiveCoefficients();
+  const int iterations = level.Dense ? options.DenseIterations
+    : finest                         ? options.FinestIterations
+                                     : options.BandIterations;
+  solveLevel(system, bricks[l], iterations,
+    level.Dense ? options.DenseTolerance : options.BandTolerance, threads, report);
+  report.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+/// f and its gradient at samples, (1 + Dim) values each, by a level that covers them.
+template <int Dim>
+std::vector<float> evaluateLevel(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  std::vector<Sample<Dim>> samples, int threads)
+{
+  Level<Dim> atSamples{ level.Coarsening, level.Grid, level.Dense, std::move(samples) };
+  const HermiteRows<Dim> rows = makeRows(atSamples, bricks, 0);
+  std::vector<float> values;
+  BrickOperator<Dim>(bricks, rows, {}, threads).evaluateWithGradient(bricks.coefficients(), values);
+  for (std::size_t k = 0; k < rows.Rows.size(); ++k)
+  {
+    for (int a = 0; a < Dim; ++a)
+    {
+      values[k * (1 + Dim) + 1 + static_cast<std::size_t>(a)] /=
+        static_cast<float>(level.Grid.Spacing[a]);
+    }
+  }
+  return values;
+}
+
+/// The root mean square distance of the points from the zero set, in knot spacings.
+template <int Dim>
+double noiseOf(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const std::vector<Sample<Dim>>& points, int threads)
+{
+  const std::vector<float> values = evaluateLevel(level, bricks, points, threads);
+  double sum = 0, count = 0;
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    if (points[k].HasNormal)
+    {
+      const Eigen::Map<const Eigen::Matrix<float, Dim, 1>> slope(&values[k * (1 + Dim) + 1]);
+      const double distance =
+        values[k * (1 + Dim)] / std::max(static_cast<double>(slope.norm()), LeastSlope);
+      sum += distance * distance;
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / count) / level.Grid.Spacing.mean() : 0;
+}
+
+/// The smoothing length that predicts the normals of held-out points best.
+template <int Dim>
+double validatedSmoothing(const std::vector<Level<Dim>>& levels,
+  const std::vector<BrickLattice<Dim>>& bricks, const HierarchicalOptions& options, int threads)
+{
+  std::vector<Sample<Dim>> kept, heldOut;
+  std::int64_t index = 0;
+  for (const Sample<Dim>& sample : levels.back().Samples)
+  {
+    (++index % HeldOutPeriod == 0 && sample.HasNormal ? heldOut : kept).push_back(sample);
+  }
+  std::size_t last = 0;
+  while (last + 1 < levels.size() && longestAxis(levels[last + 1].Grid) <= ValidationCells)
+  {
+    ++last;
+  }
+  std::vector<Level<Dim>> training(levels.size());
+  for (std::size_t l = levels.size(); l-- > 0;)
+  {
+    training[l] = { levels[l].Coarsening, levels[l].Grid, levels[l].Dense, {} };
+    training[l].Samples = l + 1 == levels.size()
+      ? std::move(kept)
+      : cluster(training[l + 1].Samples, levels[l].Coarsening);
+  }
+  std::vector<BrickLattice<Dim>> scratch(
+    bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  HierarchicalOptions quick = options;
+  quick.DenseIterations = std::min(options.DenseIterations, ValidationIterations);
+  quick.BandIterations = std::min(options.BandIterations, ValidationIterations);
+  const auto errorOf = [&](double length)
+  {
+    for (std::size_t l = 0; l <= last; ++l)
+    {
+      solveOne(training, scratch, l, length, quick, threads);
+    }
+    const std::vector<float> values =
+      evaluateLevel(training[last], scratch[last], heldOut, threads);
+    double sum = 0;
+    for (std::size_t k = 0; k < heldOut.size(); ++k)
+    {
+      const Eigen::Map<const Eigen::Matrix<float, Dim, 1>> slope(&values[k * (1 + Dim) + 1]);
+      sum += std::min(
+        (slope.template cast<double>() - heldOut[k].Normal).squaredNorm(), MostNormalError);
+    }
+    return std::sqrt(sum / static_cast<double>(heldOut.size()));
+  };
+  const double spacing = levels[last].Grid.Spacing.mean() *
+    std::pow(static_cast<double>(levels.back().Samples.size()) / occupiedCells(levels[last]),
+      -1. / (Dim - 1));
+  double first = FirstSmoothing * spacing;
+  std::deque<double> errors{ errorOf(first), errorOf(first * ValidationStep) };
+  while (errors.size() < MostValidations)
+  {
+    const auto best = std::min_element(errors.begin(), errors.end());
+    if (best == errors.begin())
+    {
+      first /= ValidationStep;
+      errors.push_front(errorOf(first));
+    }
+    else if (best + 1 == errors.end())
+    {
+      errors.push_back(
+        errorOf(first * std::pow(ValidationStep, static_cast<double>(errors.size()))));
+    }
+    else
+    {
+      break;
+    }
+  }
+  const double enough = ValidationSlack * *std::min_element(errors.begin(), errors.end());
+  for (const double error : errors)
+  {
+    if (error <= enough)
+    {
+      break;
+    }
+    first *= ValidationStep;
+  }
+  return first;
+}
 }
 
 template <int Dim>
@@ -439,8 +653,21 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, const Hermi
 {
   const int threads = resolveThreads(options.Threads);
   HierarchicalResult<Dim> result;
-  std::vector<Level<Dim>> levels = makeLevels(lattice, sortedSamples(lattice, input), options);
+  const std::vector<Level<Dim>> levels =
+    makeLevels(lattice, sortedSamples(lattice, input), options);
   result.Levels = makeBricks(levels);
+
+  // The finest level that the points alone determine tells how noisy they are.
+  std::size_t gate = levels.size();
+  const auto n = static_cast<double>(levels.back().Samples.size());
+  for (std::size_t l = 0; l < levels.size() && options.SmoothingLength < 0; ++l)
+  {
+    if (n >= PointsPerDeterminedCell * occupiedCells(levels[l]))
+    {
+      gate = l;
+    }
+  }
+  result.SmoothingLength = std::max(options.SmoothingLength, 0.0);
   for (std::size_t l = 0; l < levels.size(); ++l)
   {
     if (progress && !progress(static_cast<double>(l) / static_cast<double>(levels.size())))
@@ -448,37 +675,29 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, const Hermi
       result.Aborted = true;
       return result;
     }
-    const auto start = std::chrono::steady_clock::now();
-    const Level<Dim>& level = levels[l];
-    BrickLattice<Dim>& bricks = result.Levels[l];
-    const bool finest = l + 1 == levels.size();
-    if (l > 0)
+    result.Reports.push_back(
+      solveOne(levels, result.Levels, l, result.SmoothingLength, options, threads));
+    if (l == gate || l + 1 == gate)
     {
-      bricks.refineFrom(result.Levels[l - 1], threads);
+      const double before = result.Noise * (l > 0 ? levels[l - 1].Grid.Spacing.mean() : 0);
+      result.Noise = noiseOf(levels[l], result.Levels[l], levels.back().Samples, threads);
+      if (l + 1 == gate)
+      {
+        continue;
+      }
+      gate = levels.size();
+      if (result.Noise > NoiseGate &&
+        result.Noise * levels[l].Grid.Spacing.mean() > NoiseFall * before)
+      {
+        result.SmoothingLength = validatedSmoothing(levels, result.Levels, options, threads);
+      }
+      if (result.SmoothingLength > 0)
+      {
+        // Start again, with smoothing on all levels.
+        result.Reports.clear();
+        l = static_cast<std::size_t>(-1);
+      }
     }
-    const double gradient = level.Dense ? options.DenseGradient
-      : finest                          ? options.FinestGradient
-                                        : options.BandGradient;
-    HermiteRows<Dim> rows = makeRows(level, bricks, gradient);
-    weighRows(bricks, rows, l > 0, options, threads);
-    FairingWeights fairing;
-    fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : 0);
-    fairing.ThinPlate =
-      static_cast<float>(level.Dense ? options.DenseThinPlate : options.BandThinPlate);
-    const BrickOperator<Dim> system(bricks, rows, fairing, threads);
-
-    LevelReport report;
-    report.Spacing = level.Grid.Spacing.maxCoeff();
-    report.NumberOfRows = static_cast<std::int64_t>(rows.Rows.size());
-    report.NumberOfActiveCoefficients = bricks.numberOfActiveCoefficients();
-    const int iterations = level.Dense ? options.DenseIterations
-      : finest                         ? options.FinestIterations
-                                       : options.BandIterations;
-    solveLevel(system, bricks, iterations,
-      level.Dense ? options.DenseTolerance : options.BandTolerance, threads, report);
-    report.Seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    result.Reports.push_back(report);
   }
   return result;
 }

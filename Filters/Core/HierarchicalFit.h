@@ -43,13 +43,17 @@ struct HierarchicalOptions
   double DenseMembrane = 0.01;  ///< tau_1 of the dense levels
   double DenseThinPlate = 1e-3; ///< tau_2 of the dense levels
   double BandThinPlate = 3e-4;  ///< tau_2 of the others
-  int DenseIterations = 80;
+  int DenseIterations = 20;
   double DenseTolerance = 1e-5;
   int BandIterations = 12;
   int FinestIterations = 12;
   double BandTolerance = 1e-3;
   /// Residuals beyond this many standard deviations of the coarser prediction lose weight.
   double RobustFactor = 4;
+  /// Smoothing length, lengths in the units of the points: weights of gradient rows and thin plate
+  /// grow where it exceeds the knot spacing. Negative: none on clean data, by cross-validation on
+  /// noisy ones.
+  double SmoothingLength = -1;
   int Threads = 0;
 };
 
@@ -70,6 +74,10 @@ struct HierarchicalResult
   bool Aborted = false;
   std::vector<BrickLattice<Dim>> Levels; ///< coarse to fine
   std::vector<LevelReport> Reports;
+  /// Root mean square distance of the points from the zero set of a level that they determine well,
+  /// in its knot spacings; 0 if the points are too sparse for any.
+  double Noise = 0;
+  double SmoothingLength = 0; ///< as used
 };
 
 /// @param lattice  the finest lattice
