@@ -74,6 +74,8 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     vtkDataArray* normals = choose(NormalsIndex, blocks[b]);
+    this->ChosenArrays.push_back(normals);
+    this->ChosenArrays.push_back(choose(WeightsIndex, blocks[b]));
     if (!normals || normals->GetNumberOfComponents() != 3 ||
       normals->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints())
     {

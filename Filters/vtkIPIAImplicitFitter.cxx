@@ -772,9 +772,9 @@ bool vtkIPIAImplicitFitter::Fit()
   // What the fit depends on, to reuse it when only the samples change.
   std::vector<vtkMTimeType> identity = state.ProblemIdentity;
   identity.front() = 0; // the filter's own time covers more than the fit's parameters
-  for (int index : { ipia::PointCloud::NormalsIndex, ipia::PointCloud::WeightsIndex })
+  for (vtkDataArray* array : problem.Cloud.ChosenArrays)
   {
-    appendArrayIdentity(this->GetInputArrayToProcess(index, problem.Cloud.Source), identity);
+    appendArrayIdentity(array, identity);
   }
   std::vector<double> parameters{ this->OffsetDistance, this->OffsetValue,
     this->InwardOffsetDistance, this->InwardOffsetValue, this->Tolerance, this->StepSize };
