@@ -226,6 +226,14 @@ void vtkIPIAImplicitFitter::Problem::ChooseLattice(const vtkIPIAImplicitFitter& 
   ipia::PlacedLattice<Dim> placed;
   if (automatic)
   {
+    const bool anySize = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
+    const double spacings = longest * (1 + 2 * parameters.Padding) / h;
+    if (!anySize && !(spacings < VTK_INT_MAX))
+    {
+      this->Refusal = text("Padding is ", parameters.Padding, ", which would take ", spacings,
+        " knot spacings along an axis. Reduce Padding or give GridSize.");
+      return;
+    }
     placed = ipia::latticeAround<Dim>(box, parameters.Padding, size, h);
   }
   else
