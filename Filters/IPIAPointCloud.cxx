@@ -348,7 +348,11 @@ std::vector<double> PointCloud::offsetDistances(double distance, double side) co
           const double along = n.dot(e);
           const double root = std::sqrt(std::max(0.0, along * along - a * e.squaredNorm()));
           const double shorter = (along - root) / a;
-          reach = shorter < reach * (1 - 1e-6) ? shorter : reach / 2;
+          if (!(shorter < reach * (1 - 1e-6)))
+          {
+            break; // the neighbour that drew it in last, found again by rounding
+          }
+          reach = shorter;
         }
         distances[k] = reach;
       }
