@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
+# shellcheck shell=bash
 # What the two commands for newcomers, Examples/demo.sh and Testing/run.sh, have in common.
 
 as_root()
@@ -36,7 +37,10 @@ run_quietly()
     fi
   done
   if ! wait "$job"; then
-    echo
+    echo " failed"
+    if [ -n "${WILL_RETRY:-}" ]; then
+      return 1
+    fi
     tail -n 40 "$log" >&2
     echo "error: $name failed; all of it is in $log" >&2
     return 1
@@ -54,12 +58,12 @@ missing_packages()
   done
 }
 
-# An index of the packages, which a fresh machine has not.
+# update_index LOG PACKAGE...: a fresh machine has no index of packages.
 update_index()
 {
   local log=$1
   shift
-  if ! apt-cache show "$@" > /dev/null 2>&1; then
+  if ! apt-get install --simulate --no-install-recommends "$@" > /dev/null 2>&1; then
     run_quietly "index" "$log" as_root apt-get update
   fi
 }
@@ -84,8 +88,8 @@ install_packages()
   echo "missing   ${missing[*]}"
   local install=(env DEBIAN_FRONTEND=noninteractive
     apt-get install -y --no-install-recommends "${missing[@]}")
-  if ! run_quietly "install" "$log" as_root "${install[@]}"; then
-    # An old index names files that are gone from the mirrors.
+  if ! WILL_RETRY=yes run_quietly "install" "$log" as_root "${install[@]}"; then
+    # An old index names files that the mirrors no longer have.
     run_quietly "index" "$log" as_root apt-get update
     run_quietly "install" "$log" as_root "${install[@]}"
   fi
@@ -102,8 +106,8 @@ unpack_package()
 
 download_and_unpack()
 (
-  cd "$2"
-  apt-get download "$1"
-  dpkg-deb -x "$1"_*.deb .
-  rm "$1"_*.deb
+  cd "$2" &&
+    apt-get download "$1" &&
+    dpkg-deb -x "$1"_*.deb . &&
+    rm "$1"_*.deb
 )
