@@ -35,7 +35,7 @@ void toControlLattice(
   const Lattice<Dim>& lattice = spline.lattice();
   int dimensions[3] = { 1, 1, 1 };
   double origin[3] = { placement.Origin[0], placement.Origin[1], placement.Origin[2] };
-  double spacing[3] = { 1, 1, 1 };
+  double spacing[3] = { lattice.Spacing[0], lattice.Spacing[0], lattice.Spacing[0] };
   for (int a = 0; a < Dim; ++a)
   {
     const int axis = placement.Axis[static_cast<std::size_t>(a)];

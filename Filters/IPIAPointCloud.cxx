@@ -74,6 +74,9 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     vtkDataArray* normals = choose(NormalsIndex, blocks[b]);
+    vtkDataArray* weights = choose(WeightsIndex, blocks[b]);
+    this->ChosenArrays.push_back(normals);
+    this->ChosenArrays.push_back(weights);
     if (!normals || normals->GetNumberOfComponents() != 3 ||
       normals->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints())
     {
@@ -88,6 +91,23 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
       this->Refusal +=
         " Choose a point array of 3 components with SetInputArrayToProcess(0, ...) or "
         "compute normals with vtkPCANormalEstimation.";
+      return;
+    }
+    if (weights &&
+      (weights->GetNumberOfComponents() != 1 ||
+        weights->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints()))
+    {
+      this->Refusal = "The array of row weights has " +
+        std::to_string(weights->GetNumberOfComponents()) + " components and " +
+        std::to_string(weights->GetNumberOfTuples()) + " tuples for " +
+        std::to_string(blocks[b]->GetNumberOfPoints()) +
+        " points; it must have one component and one tuple per point.";
+      return;
+    }
+    if ((weights == nullptr) != (this->ChosenArrays[1] == nullptr))
+    {
+      this->Refusal =
+        "Some blocks of the input have row weights and others not. Give all of them the array.";
       return;
     }
   }
@@ -115,13 +135,6 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
       "in all of them.";
     return;
   }
-  if (weights && weights->GetNumberOfComponents() != 1)
-  {
-    this->Refusal = "The array of row weights has " +
-      std::to_string(weights->GetNumberOfComponents()) + " components; it must have one.";
-    return;
-  }
-
   const vtkIdType n = this->Source->GetNumberOfPoints();
   const auto reserve = static_cast<std::size_t>(n);
   this->Ids.reserve(reserve);
@@ -130,7 +143,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   this->Weights.reserve(weights ? reserve : 0);
   this->Bounds = { VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX,
     -VTK_DOUBLE_MAX };
-  bool anyNormal = false;
+  bool anyNormal = false, anyWeight = !weights;
   for (vtkIdType id = 0; id < n; ++id)
   {
     std::array<double, 3> x, normal;
@@ -149,6 +162,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
         continue;
       }
       this->Weights.push_back(w);
+      anyWeight = anyWeight || w > 0;
     }
     normals->GetTuple(id, normal.data());
     // Scaled first, so that neither tiny nor huge normals under- or overflow.
@@ -185,6 +199,10 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   else if (this->Ids.size() == 1)
   {
     this->Refusal = "The input has one usable point; at least two are needed.";
+  }
+  else if (!anyWeight)
+  {
+    this->Refusal = "All " + std::to_string(this->Ids.size()) + " row weights are zero.";
   }
   else if (this->longestSide() == 0)
   {
@@ -330,7 +348,11 @@ std::vector<double> PointCloud::offsetDistances(double distance, double side) co
           const double along = n.dot(e);
           const double root = std::sqrt(std::max(0.0, along * along - a * e.squaredNorm()));
           const double shorter = (along - root) / a;
-          reach = shorter < reach * (1 - 1e-6) ? shorter : reach / 2;
+          if (!(shorter < reach * (1 - 1e-6)))
+          {
+            break; // the neighbour that drew it in last, found again by rounding
+          }
+          reach = shorter;
         }
         distances[k] = reach;
       }

@@ -226,6 +226,14 @@ void vtkIPIAImplicitFitter::Problem::ChooseLattice(const vtkIPIAImplicitFitter& 
   ipia::PlacedLattice<Dim> placed;
   if (automatic)
   {
+    const bool anySize = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
+    const double spacings = longest * (1 + 2 * parameters.Padding) / h;
+    if (!anySize && !(spacings < VTK_INT_MAX))
+    {
+      this->Refusal = text("Padding is ", parameters.Padding, ", which would take ", spacings,
+        " knot spacings along an axis. Reduce Padding or give GridSize.");
+      return;
+    }
     placed = ipia::latticeAround<Dim>(box, parameters.Padding, size, h);
   }
   else
@@ -772,9 +780,9 @@ bool vtkIPIAImplicitFitter::Fit()
   // What the fit depends on, to reuse it when only the samples change.
   std::vector<vtkMTimeType> identity = state.ProblemIdentity;
   identity.front() = 0; // the filter's own time covers more than the fit's parameters
-  for (int index : { ipia::PointCloud::NormalsIndex, ipia::PointCloud::WeightsIndex })
+  for (vtkDataArray* array : problem.Cloud.ChosenArrays)
   {
-    appendArrayIdentity(this->GetInputArrayToProcess(index, problem.Cloud.Source), identity);
+    appendArrayIdentity(array, identity);
   }
   std::vector<double> parameters{ this->OffsetDistance, this->OffsetValue,
     this->InwardOffsetDistance, this->InwardOffsetValue, this->Tolerance, this->StepSize };

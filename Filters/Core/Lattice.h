@@ -21,7 +21,12 @@ namespace ipia
 /// Number of coefficients that one knot cell has along an axis: degree + 1.
 constexpr int Order = 4;
 
-/// Where a position lies on one axis: its knot cell and the local coordinate in [0, 1].
+/// A position this little below a knot, in knot spacings, counts as on it. The far field jumps from
+/// cell to cell, and every other sample lies on a knot: rounding must not choose its cell.
+constexpr double KnotTolerance = 1e-6;
+
+/// Where a position lies on one axis: its knot cell and the local coordinate in [-KnotTolerance,
+/// 1].
 struct AxisLocation
 {
   std::int64_t Cell;
@@ -80,12 +85,12 @@ struct Lattice
   }
 
   /// Knot cells are half open but for the last, which is closed: a position on the upper bound is
-  /// inside. Positions outside are assigned to the nearest cell (T leaves [0, 1]).
+  /// inside. Positions outside are assigned to the nearest cell (T is then beyond its range).
   AxisLocation locate(double position, int axis) const
   {
     const double u = position / this->Spacing[axis];
     const double last = static_cast<double>(this->cells(axis) - 1);
-    const double cell = std::min(std::max(std::floor(u), 0.0), last);
+    const double cell = std::min(std::max(std::floor(u + KnotTolerance), 0.0), last);
     return { static_cast<std::int64_t>(cell), u - cell };
   }
 

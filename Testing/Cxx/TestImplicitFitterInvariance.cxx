@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Far from the origin, tiny or huge: the same points give the same function.
+ */
+#include "IPIATestShapes.h"
+#include "IPIATestUtilities.h"
+
+namespace
+{
+using ipiatest::Checks;
+using ipiatest::OrientedPoints;
+using ipiatest::Text;
+
+OrientedPoints Moved(const OrientedPoints& cloud, double scale, double shift)
+{
+  OrientedPoints moved = cloud;
+  for (auto& x : moved.Positions)
+  {
+    for (double& c : x)
+    {
+      c = scale * c + shift;
+    }
+  }
+  return moved;
+}
+
+vtkSmartPointer<vtkIPIAImplicitFitter> Fit(const OrientedPoints& cloud, int solver)
+{
+  auto fitter = ipiatest::NewClassicFitter(ipiatest::ToPolyData(cloud), 24);
+  fitter->SetSolver(solver);
+  fitter->SetOutputScalarTypeToDouble();
+  fitter->Update();
+  return fitter;
+}
+
+/// f scales with the points; relative to its largest value.
+void CheckSame(Checks& checks, const OrientedPoints& cloud, int solver, double scale, double shift)
+{
+  auto plain = Fit(cloud, solver), moved = Fit(Moved(cloud, scale, shift), solver);
+  vtkDataArray* expected = plain->GetOutput()->GetPointData()->GetScalars();
+  vtkDataArray* values = moved->GetOutput()->GetPointData()->GetScalars();
+  const std::string what =
+    Text(cloud.Positions.size(), " points, solver ", solver, ", times ", scale, " plus ", shift);
+  if (!checks.Equal(values->GetNumberOfTuples(), expected->GetNumberOfTuples(), what + ": samples"))
+  {
+    return;
+  }
+  double largest = 0, difference = 0;
+  for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
+  {
+    const double f = expected->GetComponent(i, 0);
+    const double d = std::abs(values->GetComponent(i, 0) / scale - f);
+    largest = std::max(largest, std::abs(f));
+    difference = d <= difference ? difference : d;
+  }
+  checks.That(largest > 0, what + ": f is not 0");
+  checks.AtMost(difference / largest, 1e-6, what + ": relative difference");
+}
+}
+
+int TestImplicitFitterInvariance(int, char*[])
+{
+  Checks checks;
+  const OrientedPoints clouds[] = { ipiatest::PointsOn(ipiatest::Torus(1, 0.4), 3000),
+    ipiatest::PointsOn(ipiatest::Flower(), 300) };
+  for (const OrientedPoints& cloud : clouds)
+  {
+    for (int solver :
+      { vtkIPIAImplicitFitter::ProgressiveIteration, vtkIPIAImplicitFitter::ConjugateGradient })
+    {
+      CheckSame(checks, cloud, solver, 1, 5e6);
+      CheckSame(checks, cloud, solver, 1e-6, 0);
+      CheckSame(checks, cloud, solver, 1e6, 0);
+    }
+  }
+  return checks.Result();
+}

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What cannot be fitted is refused with one error that names the cause, and leaves nothing on any
+ * port: at first, after a good run, and with a contour filter downstream.
+ */
+#include "IPIATestShapes.h"
+#include "IPIATestUtilities.h"
+
+#include "vtkFlyingEdges3D.h"
+#include "vtkIPIAImplicitFunction.h"
+#include "vtkMultiBlockDataSet.h"
+
+#include <chrono>
+#include <functional>
+#include <limits>
+
+namespace
+{
+using ipiatest::Checks;
+using ipiatest::OrientedPoints;
+using ipiatest::SphereCloud;
+using ipiatest::ToPolyData;
+
+using Setup = std::function<void(vtkIPIAImplicitFitter*)>;
+
+/// Sets nothing.
+void NoSetup(vtkIPIAImplicitFitter*) {}
+
+void ChooseWeights(vtkIPIAImplicitFitter* fitter)
+{
+  fitter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Weight");
+}
+
+void CheckNothingLeft(Checks& checks, vtkIPIAImplicitFitter* fitter, const std::string& what)
+{
+  checks.That(ipiatest::OutputsAreEmpty(fitter), what + ": all outputs are empty");
+  checks.That(!fitter->GetImplicitFunction()->HasControlLattice(), what + ": no function is left");
+  checks.Equal(fitter->GetNumberOfIterationsUsed(), 0, what + ": iterations");
+  checks.Equal(fitter->GetEnergy(), 0.0, what + ": energy");
+}
+
+/**
+ * @param input   what is refused, by itself or with
+ * @param setup   these parameters
+ * @param phrase  a part of the message
+ */
+void CheckRefused(Checks& checks, const std::string& what, vtkDataObject* input,
+  const std::string& phrase, const Setup& setup = NoSetup)
+{
+  vtkNew<ipiatest::MessageObserver> messages;
+
+  auto alone = ipiatest::NewClassicFitter(input);
+  setup(alone);
+  messages->Watch(alone);
+  const auto start = std::chrono::steady_clock::now();
+  alone->Update();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  messages->CheckOneError(checks, phrase, what);
+  CheckNothingLeft(checks, alone, what);
+  checks.AtMost(took.count(), 5, what + ": seconds until the refusal");
+  alone->Update();
+  CheckNothingLeft(checks, alone, what + ", updated again");
+  messages->Clear();
+
+  auto again = ipiatest::NewClassicFitter(SphereCloud(), 12);
+  vtkNew<vtkFlyingEdges3D> surface;
+  surface->SetInputConnection(again->GetOutputPort());
+  surface->SetValue(0, 0.0);
+  surface->Update();
+  checks.That(surface->GetOutput()->GetNumberOfPoints() > 0, "the good run has a surface");
+  again->SetGridSize(0, 0, 0);
+  again->SetInputDataObject(0, input);
+  setup(again);
+  messages->Watch(again);
+  // vtkFlyingEdges3D reports itself that an image without scalars cannot be contoured.
+  vtkNew<ipiatest::MessageObserver> downstream;
+  downstream->Watch(surface);
+  surface->Update();
+  messages->CheckOneError(checks, phrase, what + ", after a good run");
+  CheckNothingLeft(checks, again, what + ", after a good run");
+  checks.Equal(
+    surface->GetOutput()->GetNumberOfPoints(), vtkIdType(0), what + ": points downstream");
+}
+
+void TestNoPoints(Checks& checks)
+{
+  vtkNew<vtkPolyData> nothing;
+  CheckRefused(checks, "no vtkPoints", nothing, "The input has no points");
+  CheckRefused(checks, "no points", ToPolyData({}), "The input has no points");
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  CheckRefused(checks, "no blocks", blocks, "The input has no points");
+}
+
+void TestNoUsablePoint(Checks& checks)
+{
+  OrientedPoints cloud;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  cloud.Add({ nan, 0, 0 }, { 1, 0, 0 });
+  cloud.Add({ 0, nan, 0 }, { 1, 0, 0 });
+  CheckRefused(checks, "only NaN points", ToPolyData(cloud), "None of the 2 points has finite");
+}
+
+void TestOnePoint(Checks& checks)
+{
+  OrientedPoints cloud;
+  cloud.Add({ 1, 2, 3 }, { 1, 0, 0 });
+  CheckRefused(checks, "one point", ToPolyData(cloud), "one usable point");
+}
+
+void TestNoNormals(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  vtkNew<vtkPolyData> bare;
+  bare->SetPoints(cloud->GetPoints());
+  CheckRefused(checks, "no normals", bare, "The input has no point normals");
+}
+
+void TestWrongComponentCount(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  vtkNew<vtkDoubleArray> pairs;
+  pairs->SetName("Pairs");
+  pairs->SetNumberOfComponents(2);
+  pairs->SetNumberOfTuples(cloud->GetNumberOfPoints());
+  pairs->Fill(1);
+  cloud->GetPointData()->AddArray(pairs);
+  CheckRefused(checks, "normals of two components", cloud, "has 2 components",
+    [](vtkIPIAImplicitFitter* fitter)
+    {
+      fitter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Pairs");
+    });
+}
+
+void TestTooFewNormals(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  cloud->GetPointData()->GetNormals()->SetNumberOfTuples(10);
+  CheckRefused(checks, "fewer normals than points", cloud, "10 tuples for 600 points");
+}
+
+void TestZeroNormals(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  cloud->GetPointData()->GetNormals()->Fill(0);
+  CheckRefused(checks, "zero normals", cloud, "All 600 normals are zero");
+}
+
+void TestWeights(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  vtkNew<vtkDoubleArray> weights;
+  weights->SetName("Weight");
+  weights->SetNumberOfComponents(2);
+  weights->SetNumberOfTuples(cloud->GetNumberOfPoints());
+  weights->Fill(1);
+  cloud->GetPointData()->AddArray(weights);
+  CheckRefused(checks, "weights of two components", cloud, "row weights has 2 components",
+    ChooseWeights);
+
+  auto few = SphereCloud();
+  vtkNew<vtkDoubleArray> tooFew;
+  tooFew->SetName("Weight");
+  tooFew->SetNumberOfTuples(10);
+  tooFew->Fill(1);
+  few->GetPointData()->AddArray(tooFew);
+  CheckRefused(checks, "fewer weights than points", few, "10 tuples for 600 points", ChooseWeights);
+
+  auto none = SphereCloud();
+  vtkNew<vtkDoubleArray> zero;
+  zero->SetName("Weight");
+  zero->SetNumberOfTuples(none->GetNumberOfPoints());
+  zero->Fill(0);
+  none->GetPointData()->AddArray(zero);
+  CheckRefused(checks, "zero weights", none, "All 600 row weights are zero", ChooseWeights);
+}
+
+void TestEqualPoints(Checks& checks)
+{
+  OrientedPoints cloud;
+  for (int i = 0; i < 5; ++i)
+  {
+    cloud.Add({ 1, 2, 3 }, { i + 1., 1, 0 });
+  }
+  CheckRefused(checks, "equal points", ToPolyData(cloud), "All 5 points are equal");
+}
+
+void TestCollinearPoints(Checks& checks)
+{
+  OrientedPoints slanted, along;
+  for (int i = 0; i < 50; ++i)
+  {
+    slanted.Add({ 1. * i, 2. * i, 3. * i }, { 3, 0, -1 });
+    along.Add({ 1. * i, 2, 3 }, { 0, 1, i % 2 - 0.5 });
+  }
+  CheckRefused(checks, "slanted line", ToPolyData(slanted), "All 50 points lie on a line");
+  CheckRefused(checks, "line along x", ToPolyData(along), "All 50 points lie on a line");
+}
+
+void TestGridSize(Checks& checks)
+{
+  CheckRefused(checks, "grid size 3", SphereCloud(), "GridSize is 3 along axis 1",
+    [](auto* fitter) { fitter->SetGridSize(10, 3, 10); });
+  CheckRefused(checks, "negative grid size", SphereCloud(), "GridSize is -1 along axis 2",
+    [](auto* fitter) { fitter->SetGridSize(10, 10, -1); });
+}
+
+void TestSampleDimensions(Checks& checks)
+{
+  CheckRefused(checks, "one sample", SphereCloud(), "SampleDimensions is 1 along axis 0",
+    [](auto* fitter) { fitter->SetSampleDimensions(1, 10, 10); });
+  CheckRefused(checks, "negative samples", SphereCloud(), "SampleDimensions is -5 along axis 0",
+    [](auto* fitter) { fitter->SetSampleDimensions(-5, 10, 10); });
+}
+
+void TestSizesBeyondMemory(Checks& checks)
+{
+  CheckRefused(checks, "GridSize 20000^3", SphereCloud(), "GiB of memory",
+    [](auto* fitter) { fitter->SetGridSize(20000, 20000, 20000); });
+  CheckRefused(checks, "SampleDimensions 100000^3", SphereCloud(), "GiB of memory",
+    [](auto* fitter) { fitter->SetSampleDimensions(100000, 100000, 100000); });
+  CheckRefused(checks, "largest GridSize", SphereCloud(), "GiB of memory",
+    [](auto* fitter) { fitter->SetGridSize(VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX); });
+  CheckRefused(checks, "largest SampleDimensions", SphereCloud(), "GiB of memory",
+    [](auto* fitter) { fitter->SetSampleDimensions(VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX); });
+  CheckRefused(checks, "Padding 1e5", SphereCloud(), "GiB of memory",
+    [](auto* fitter) { fitter->SetPadding(1e5); });
+  CheckRefused(checks, "Padding 1e12", SphereCloud(), "Padding is 1e+12",
+    [](auto* fitter) { fitter->SetPadding(1e12); });
+  CheckRefused(checks, "largest Padding", SphereCloud(), "Padding is 1",
+    [](auto* fitter) { fitter->SetPadding(VTK_DOUBLE_MAX); });
+}
+
+void TestBounds(Checks& checks)
+{
+  CheckRefused(checks, "bounds without points", SphereCloud(), "None of the points lies in",
+    [](auto* fitter) { fitter->SetModelBounds(5, 6, 5, 6, 5, 6); });
+  CheckRefused(checks, "bounds empty along y", SphereCloud(), "empty or not finite along axis 1",
+    [](auto* fitter) { fitter->SetModelBounds(-2, 2, 1, -1, -2, 2); });
+  CheckRefused(checks, "bounds without length along z", SphereCloud(),
+    "empty or not finite along axis 2",
+    [](auto* fitter) { fitter->SetModelBounds(-2, 2, -2, 2, 1, 1); });
+  CheckRefused(checks, "infinite bounds", SphereCloud(), "empty or not finite along axis 0",
+    [](auto* fitter) { fitter->SetModelBounds(-HUGE_VAL, 2, -2, 2, -2, 2); });
+}
+
+void TestDimension(Checks& checks)
+{
+  const auto planar = [](auto* fitter) { fitter->SetDimension(2); };
+  CheckRefused(checks, "2-D for a sphere", SphereCloud(), "do not lie in a plane", planar);
+  OrientedPoints plane;
+  for (int i = 0; i < 100; ++i)
+  {
+    plane.Add({ i % 10 * 1., i / 10 * 1., 0 }, { 0, 0, 1 });
+  }
+  CheckRefused(checks, "2-D with normals across", ToPolyData(plane),
+    "normals point out of the plane of the points (along axis 2)", planar);
+}
+
+void TestExtraRowsWithoutValues(Checks& checks)
+{
+  CheckRefused(checks, "extra rows without values", SphereCloud(),
+    "The extra rows (input port 1) have no target values",
+    [](auto* fitter) { fitter->SetExtraRowsData(SphereCloud(10, 0.5)); });
+}
+
+void TestDivergence(Checks& checks)
+{
+  CheckRefused(checks, "diverging step", SphereCloud(), "diverges with StepSize 1000",
+    [](auto* fitter) { fitter->SetStepSize(1000); });
+}
+
+void TestBlockWithoutNormals(Checks& checks)
+{
+  vtkNew<vtkPolyData> bare;
+  bare->SetPoints(SphereCloud(50, 2)->GetPoints());
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, SphereCloud());
+  blocks->SetBlock(1, bare);
+  CheckRefused(checks, "block without normals", blocks, "Block 1 of the input has no point normals");
+}
+
+void TestBlockWithoutWeights(Checks& checks)
+{
+  auto weighted = SphereCloud();
+  vtkNew<vtkDoubleArray> weights;
+  weights->SetName("Weight");
+  weights->SetNumberOfTuples(weighted->GetNumberOfPoints());
+  weights->Fill(2);
+  weighted->GetPointData()->AddArray(weights);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, weighted);
+  blocks->SetBlock(1, SphereCloud(50, 2));
+  CheckRefused(checks, "block without weights", blocks,
+    "Some blocks of the input have row weights and others not", ChooseWeights);
+}
+}
+
+int TestImplicitFitterRefusals(int, char*[])
+{
+  Checks checks;
+  TestNoPoints(checks);
+  TestNoUsablePoint(checks);
+  TestOnePoint(checks);
+  TestNoNormals(checks);
+  TestWrongComponentCount(checks);
+  TestTooFewNormals(checks);
+  TestZeroNormals(checks);
+  TestWeights(checks);
+  TestEqualPoints(checks);
+  TestCollinearPoints(checks);
+  TestGridSize(checks);
+  TestSampleDimensions(checks);
+  TestSizesBeyondMemory(checks);
+  TestBounds(checks);
+  TestDimension(checks);
+  TestExtraRowsWithoutValues(checks);
+  TestDivergence(checks);
+  TestBlockWithoutNormals(checks);
+  TestBlockWithoutWeights(checks);
+  return checks.Result();
+}

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What can be left out is left out with one warning that counts it, and the rest is fitted.
+ */
+#include "IPIATestShapes.h"
+#include "IPIATestTopology.h"
+#include "IPIATestUtilities.h"
+
+#include <functional>
+#include <limits>
+
+namespace
+{
+using ipiatest::Checks;
+using ipiatest::SphereCloud;
+
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+
+using Setup = std::function<void(vtkIPIAImplicitFitter*)>;
+
+/// The warning comes once, @a fitted points are left, and the surface is one closed sphere.
+void CheckWarned(Checks& checks, const std::string& what, vtkPolyData* cloud,
+  const std::string& phrase, vtkIdType fitted, const Setup& setup)
+{
+  auto fitter = ipiatest::NewClassicFitter(cloud, 16);
+  setup(fitter);
+  vtkNew<ipiatest::MessageObserver> messages;
+  messages->Watch(fitter);
+  fitter->GenerateGradientOn();
+  fitter->GenerateSupportOn();
+  fitter->Update();
+  messages->CheckOneWarning(checks, phrase, what);
+  checks.Equal(
+    ipiatest::FittedPoints(fitter)->GetNumberOfPoints(), fitted, what + ": fitted points");
+  checks.That(ipiatest::OutputsAreSound(fitter), what + ": all outputs are finite");
+  checks.Equal(ipiatest::TopologyOf(ipiatest::ZeroSurface(fitter)),
+    ipiatest::Topology{ 1, 0, 0, 0 }, what);
+  fitter->SetSampleDimensions(20, 20, 20);
+  fitter->Update();
+  messages->CheckSilence(checks, what + ", sampled again");
+}
+
+void TestZeroNormals(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  for (vtkIdType i : { 3, 100, 599 })
+  {
+    cloud->GetPointData()->GetNormals()->SetTuple3(i, 0, 0, 0);
+  }
+  CheckWarned(checks, "zero normals", cloud, "Left out of the fit: 3 zero or non-finite normal(s)",
+    600, [](auto*) {});
+}
+
+void TestNonFiniteNormals(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  cloud->GetPointData()->GetNormals()->SetTuple3(0, NaN, 0, 1);
+  cloud->GetPointData()->GetNormals()->SetTuple3(7, 0, Infinity, 1);
+  CheckWarned(checks, "NaN normals", cloud, "2 zero or non-finite normal(s)", 600, [](auto*) {});
+}
+
+void TestNonFinitePoints(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  cloud->GetPoints()->SetPoint(0, NaN, 0, 0);
+  cloud->GetPoints()->SetPoint(1, 0, Infinity, 0);
+  cloud->GetPoints()->SetPoint(2, 0, 0, -Infinity);
+  cloud->GetPoints()->SetPoint(599, NaN, NaN, NaN);
+  CheckWarned(checks, "NaN and infinite points", cloud, "4 non-finite point(s)", 596, [](auto*) {});
+}
+
+void TestWeights(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  vtkNew<vtkDoubleArray> weights;
+  weights->SetName("Weight");
+  weights->SetNumberOfTuples(600);
+  weights->Fill(1);
+  weights->SetValue(0, NaN);
+  weights->SetValue(1, -1);
+  weights->SetValue(2, Infinity);
+  weights->SetValue(3, 0); // is allowed
+  cloud->GetPointData()->AddArray(weights);
+  CheckWarned(checks, "NaN, negative and infinite weights", cloud,
+    "3 point(s) with a negative or non-finite weight", 597,
+    [](vtkIPIAImplicitFitter* fitter)
+    {
+      fitter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Weight");
+    });
+}
+
+void TestPointsOutsideBounds(Checks& checks)
+{
+  ipiatest::OrientedPoints cloud = ipiatest::SpherePoints(600);
+  cloud.Append(ipiatest::SpherePoints(20, 0.1, { 5, 5, 5 }));
+  CheckWarned(checks, "points outside ModelBounds", ipiatest::ToPolyData(cloud),
+    "20 point(s) outside ModelBounds", 600,
+    [](auto* fitter) { fitter->SetModelBounds(-1.3, 1.3, -1.3, 1.3, -1.3, 1.3); });
+}
+
+void TestNonFiniteExtraRows(Checks& checks)
+{
+  auto rows = SphereCloud(10, 0.2);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("Value");
+  values->SetNumberOfTuples(10);
+  values->Fill(-0.8);
+  values->SetValue(4, NaN);
+  rows->GetPointData()->SetScalars(values);
+  rows->GetPoints()->SetPoint(5, Infinity, 0, 0);
+  CheckWarned(checks, "NaN extra rows", SphereCloud(), "2 non-finite extra row(s)", 600,
+    [&](auto* fitter) { fitter->SetExtraRowsData(rows); });
+}
+
+/// Several causes share one warning.
+void TestAllAtOnce(Checks& checks)
+{
+  auto cloud = SphereCloud();
+  cloud->GetPoints()->SetPoint(0, NaN, 0, 0);
+  cloud->GetPointData()->GetNormals()->SetTuple3(5, 0, 0, 0);
+  CheckWarned(checks, "several causes", cloud,
+    "Left out of the fit: 1 non-finite point(s), 1 zero or non-finite normal(s)", 599,
+    [](auto*) {});
+}
+
+/// Half a sphere has no other side: the far field says which sign it gave.
+void TestOpenSurface(Checks& checks)
+{
+  ipiatest::OrientedPoints half;
+  const auto sphere = ipiatest::SpherePoints(4000);
+  for (std::size_t i = 0; i < sphere.Positions.size(); ++i)
+  {
+    if (sphere.Positions[i][2] > 0)
+    {
+      half.Add(sphere.Positions[i], sphere.Normals[i]);
+    }
+  }
+  auto fitter = ipiatest::NewClassicFitter(ipiatest::ToPolyData(half), 32);
+  vtkNew<ipiatest::MessageObserver> messages;
+  messages->Watch(fitter);
+  fitter->Update();
+  messages->CheckOneWarning(checks, "which is open there or has wide holes", "open surface");
+  checks.That(ipiatest::OutputsAreSound(fitter), "open surface: all outputs are finite");
+}
+}
+
+int TestImplicitFitterWarnings(int, char*[])
+{
+  Checks checks;
+  TestZeroNormals(checks);
+  TestNonFiniteNormals(checks);
+  TestNonFinitePoints(checks);
+  TestWeights(checks);
+  TestPointsOutsideBounds(checks);
+  TestNonFiniteExtraRows(checks);
+  TestAllAtOnce(checks);
+  TestOpenSurface(checks);
+  return checks.Result();
+}
