@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIPIAImplicitFitter.h"
 
-#include "Core/AutomaticLattice.h"
-#include "Core/ImplicitFit.h"
-#include "IPIAControlLattice.h"
-#include "IPIAPointCloud.h"
+#include "IPIAFitSolution.h"
+#include "IPIAText.h"
 #include "vtkIPIAImplicitFunction.h"
 
 #include "vtkCellArray.h"
@@ -27,53 +25,16 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVersion.h"
 
-#include "vtksys/SystemInformation.hxx"
-
 #include <algorithm>
-#include <cmath>
-#include <sstream>
-#include <type_traits>
 
 vtkStandardNewMacro(vtkIPIAImplicitFitter);
 
 namespace
 {
-/// The automatic knot spacing in units of the point spacing: about 2.5 points per occupied cell.
-constexpr double SpacingPerPoint = 1.6;
-/// Limits of an automatic lattice: knot spacings along the longest side of the points.
-constexpr double FewestSpacings = 8, MostSpacings = 256;
-/// Distance of the automatic offset rows, in knot spacings.
-constexpr double OffsetInSpacings = 1.5;
-/// Iterations that fit well without following the noise; conjugate gradients converge much faster.
-constexpr int AutomaticProgressiveIterations = 100, AutomaticConjugateIterations = 15;
-/// No more samples than this unless the user asks for them.
-constexpr double MostAutomaticSamples = 268435456; // 2^28
-/// Share of the machine's memory that a fit may be expected to take.
-constexpr double MemoryShare = 0.9;
-/// Bytes that the fit needs per coefficient and per row, all its arrays together.
-constexpr double BytesPerCoefficient = 96, BytesPerRow = 160;
-/// Shares of the progress bar: up to the end of the iteration, and of the sampling.
+/// Shares of the progress bar: up to the end of the fit; the rest is sampling.
 constexpr double ProgressOfRows = 0.05, ProgressOfFit = 0.8;
 
-template <typename... Parts>
-std::string text(const Parts&... parts)
-{
-  std::ostringstream stream;
-  (stream << ... << parts);
-  return stream.str();
-}
-
-std::string triple(const double* v)
-{
-  return text("(", v[0], ", ", v[1], ", ", v[2], ")");
-}
-
-double memoryOfMachine()
-{
-  vtksys::SystemInformation information;
-  information.RunMemoryCheck();
-  return 1024.0 * static_cast<double>(information.GetHostMemoryTotal());
-}
+using ipia::text;
 
 /// Everything a result depends on that identifies data: what it was made of and when.
 void appendIdentity(vtkDataObject* data, std::vector<vtkMTimeType>& identity)
@@ -95,298 +56,6 @@ void appendArrayIdentity(vtkDataArray* array, std::vector<vtkMTimeType>& identit
   identity.push_back(reinterpret_cast<std::uintptr_t>(array));
   identity.push_back(array ? array->GetMTime() : 0);
 }
-
-/// The result of a fit in either dimension.
-template <int Dim>
-struct PlacedFit
-{
-  ipia::Placement<Dim> Place;
-  ipia::FitResult<Dim> Result;
-};
-}
-
-/// The input and the domain, lattice and samples that follow from it and from the parameters.
-class vtkIPIAImplicitFitter::Problem
-{
-public:
-  ipia::PointCloud Cloud;
-  std::string Refusal; ///< empty if the problem can be solved
-  vtkIdType OutsideBounds = 0;
-
-  int Dimension = 3;
-  int FlatAxis = -1; ///< the axis across the plane in 2-D
-  double Origin[3] = { 0, 0, 0 };
-  double Upper[3] = { 0, 0, 0 };
-  double Spacing[3] = { 1, 1, 1 };
-  int GridSize[3] = { 1, 1, 1 };
-  double SampleSpacing[3] = { 1, 1, 1 };
-  int WholeExtent[6] = { 0, -1, 0, -1, 0, -1 };
-
-  void Prepare(const vtkIPIAImplicitFitter& parameters);
-
-private:
-  void ChooseDimension(const vtkIPIAImplicitFitter& parameters);
-  template <int Dim>
-  void ChooseLattice(const vtkIPIAImplicitFitter& parameters);
-  void ChooseSamples(const vtkIPIAImplicitFitter& parameters);
-  void DropPointsOutside();
-  void CheckMemory(const vtkIPIAImplicitFitter& parameters);
-};
-
-void vtkIPIAImplicitFitter::Problem::Prepare(const vtkIPIAImplicitFitter& parameters)
-{
-  this->Refusal = this->Cloud.Refusal;
-  const auto step = [this](auto&& action)
-  {
-    if (this->Refusal.empty())
-    {
-      action();
-    }
-  };
-  step([&] { this->ChooseDimension(parameters); });
-  step(
-    [&]
-    {
-      if (this->Dimension == 2)
-      {
-        this->ChooseLattice<2>(parameters);
-      }
-      else
-      {
-        this->ChooseLattice<3>(parameters);
-      }
-    });
-  step([&] { this->ChooseSamples(parameters); });
-  step([&] { this->CheckMemory(parameters); });
-  step([&] { this->DropPointsOutside(); });
-  if (!this->Refusal.empty())
-  {
-    const int none[6] = { 0, -1, 0, -1, 0, -1 };
-    std::copy_n(none, 6, this->WholeExtent);
-  }
-}
-
-void vtkIPIAImplicitFitter::Problem::ChooseDimension(const vtkIPIAImplicitFitter& parameters)
-{
-  const int flat = this->Cloud.flatAxis();
-  if (parameters.Dimension == 2 && flat < 0)
-  {
-    const int thin = this->Cloud.axisWithoutExtent();
-    this->Refusal = thin < 0
-      ? "Dimension is 2, but the points do not lie in a plane perpendicular to an axis."
-      : text("Dimension is 2, but normals point out of the plane of the points (along axis ", thin,
-          ").");
-    return;
-  }
-  this->Dimension = parameters.Dimension == 3 || flat < 0 ? 3 : 2;
-  this->FlatAxis = this->Dimension == 2 ? flat : -1;
-  if (this->Dimension == 3 && this->Cloud.isLine())
-  {
-    this->Refusal = text("All ", this->Cloud.Positions.size(),
-      " points lie on a line; a surface needs points off it.");
-  }
-}
-
-template <int Dim>
-void vtkIPIAImplicitFitter::Problem::ChooseLattice(const vtkIPIAImplicitFitter& parameters)
-{
-  const auto place = ipia::Placement<Dim>::withFlatAxis(this->FlatAxis);
-  const double* bounds = parameters.ModelBounds;
-  bool automatic = true;
-  ipia::Box<Dim> box, model;
-  ipia::Index<Dim> size;
-  for (int a = 0; a < Dim; ++a)
-  {
-    const auto i = static_cast<std::size_t>(a);
-    const auto axis = static_cast<std::size_t>(place.Axis[i]);
-    box.Lower[a] = this->Cloud.Bounds[2 * axis];
-    box.Upper[a] = this->Cloud.Bounds[2 * axis + 1];
-    model.Lower[a] = bounds[2 * axis];
-    model.Upper[a] = bounds[2 * axis + 1];
-    automatic = automatic && !(bounds[2 * axis] <= bounds[2 * axis + 1]);
-    size[i] = parameters.GridSize[axis];
-    if (size[i] != 0 && size[i] < ipia::Order)
-    {
-      this->Refusal = text("GridSize is ", size[i], " along axis ", axis,
-        "; a cubic lattice needs at least 4 coefficients (0: automatic).");
-      return;
-    }
-  }
-
-  const double longest = this->Cloud.longestSide();
-  ipia::Points<Dim> positions(Dim, this->Cloud.Positions.size());
-  ipia::Box<Dim> local = box;
-  for (std::size_t k = 0; k < this->Cloud.Positions.size(); ++k)
-  {
-    positions.col(static_cast<Eigen::Index>(k)) = place.toLocal(this->Cloud.Positions[k].data());
-  }
-  const double wanted = SpacingPerPoint * ipia::pointSpacing(positions, local);
-  const double h = std::min(std::max(wanted, longest / MostSpacings), longest / FewestSpacings);
-
-  ipia::PlacedLattice<Dim> placed;
-  if (automatic)
-  {
-    const bool anySize = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
-    const double spacings = longest * (1 + 2 * parameters.Padding) / h;
-    if (!anySize && !(spacings < VTK_INT_MAX))
-    {
-      this->Refusal = text("Padding is ", parameters.Padding, ", which would take ", spacings,
-        " knot spacings along an axis. Reduce Padding or give GridSize.");
-      return;
-    }
-    placed = ipia::latticeAround<Dim>(box, parameters.Padding, size, h);
-  }
-  else
-  {
-    for (int a = 0; a < Dim; ++a)
-    {
-      if (!(model.Lower[a] < model.Upper[a] && std::isfinite(model.sides()[a])))
-      {
-        this->Refusal = text("ModelBounds are empty or not finite along axis ",
-          place.Axis[static_cast<std::size_t>(a)], ": [", model.Lower[a], ", ", model.Upper[a],
-          "]. Give all axes a positive length, or leave all unset.");
-        return;
-      }
-    }
-    // A box much larger than its points does not get more than MostSpacings of its own.
-    placed =
-      ipia::latticeOn<Dim>(model, size, std::max(h, model.sides().maxCoeff() / MostSpacings));
-  }
-
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    this->Origin[axis] = this->Upper[axis] = this->Cloud.Bounds[static_cast<std::size_t>(2 * axis)];
-    this->Spacing[axis] = placed.Grid.Spacing[0];
-    this->GridSize[axis] = 1;
-  }
-  for (int a = 0; a < Dim; ++a)
-  {
-    const int axis = place.Axis[static_cast<std::size_t>(a)];
-    this->Origin[axis] = placed.Lower[a];
-    this->Spacing[axis] = placed.Grid.Spacing[a];
-    this->Upper[axis] = automatic ? placed.Lower[a] + placed.Grid.extent(a) : model.Upper[a];
-    this->GridSize[axis] = static_cast<int>(placed.Grid.Size[static_cast<std::size_t>(a)]);
-  }
-}
-
-void vtkIPIAImplicitFitter::Problem::ChooseSamples(const vtkIPIAImplicitFitter& parameters)
-{
-  double total = 1;
-  double dimensions[3];
-  bool anyAutomatic = false;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const bool automatic = parameters.SampleDimensions[axis] == 0;
-    dimensions[axis] = axis == this->FlatAxis ? 1
-      : automatic                             ? 2. * (this->GridSize[axis] - 3) + 1
-                                              : parameters.SampleDimensions[axis];
-    if (axis != this->FlatAxis && dimensions[axis] < 2)
-    {
-      this->Refusal = text("SampleDimensions is ", parameters.SampleDimensions[axis],
-        " along axis ", axis, "; at least 2 sample points are needed (0: automatic).");
-      return;
-    }
-    anyAutomatic = anyAutomatic || (automatic && axis != this->FlatAxis);
-    total *= dimensions[axis];
-  }
-  const double shrink = anyAutomatic
-    ? std::min(1.0, std::pow(MostAutomaticSamples / total, 1. / this->Dimension))
-    : 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (parameters.SampleDimensions[axis] == 0 && axis != this->FlatAxis)
-    {
-      dimensions[axis] = std::max(2.0, std::floor(dimensions[axis] * shrink));
-    }
-    this->WholeExtent[2 * axis] = 0;
-    this->WholeExtent[2 * axis + 1] = static_cast<int>(dimensions[axis]) - 1;
-    this->SampleSpacing[axis] = axis == this->FlatAxis
-      ? this->Spacing[axis]
-      : (this->Upper[axis] - this->Origin[axis]) / (dimensions[axis] - 1);
-  }
-}
-
-void vtkIPIAImplicitFitter::Problem::CheckMemory(const vtkIPIAImplicitFitter& parameters)
-{
-  double coefficients = 1, samples = 1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    coefficients *= this->GridSize[axis];
-    samples *= this->WholeExtent[2 * axis + 1] + 1.;
-  }
-  const double scalar = parameters.OutputScalarType == VTK_DOUBLE ? 8 : 4;
-  const double arrays =
-    1 + (parameters.GenerateGradient ? 4 : 0) + (parameters.GenerateSupport ? 1 : 0);
-  const double rows = 3. * static_cast<double>(this->Cloud.Positions.size());
-  const double needed =
-    coefficients * BytesPerCoefficient + rows * BytesPerRow + samples * arrays * scalar;
-  const double available = memoryOfMachine();
-  if (needed > MemoryShare * available)
-  {
-    constexpr double gibibyte = 1073741824;
-    this->Refusal = text("The fit would take about ", needed / gibibyte,
-      " GiB of memory (GridSize ", this->GridSize[0], " x ", this->GridSize[1], " x ",
-      this->GridSize[2], ", ", this->WholeExtent[1] + 1, " x ", this->WholeExtent[3] + 1, " x ",
-      this->WholeExtent[5] + 1, " samples); the machine has ", available / gibibyte,
-      " GiB. Reduce GridSize or SampleDimensions.");
-  }
-}
-
-void vtkIPIAImplicitFitter::Problem::DropPointsOutside()
-{
-  const auto inside = [this](const std::array<double, 3>& x)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double value = x[static_cast<std::size_t>(axis)];
-      const double slack = 1e-12 * (this->Upper[axis] - this->Origin[axis]);
-      if (axis != this->FlatAxis &&
-        !(value >= this->Origin[axis] - slack && value <= this->Upper[axis] + slack))
-      {
-        return false;
-      }
-    }
-    return true;
-  };
-  ipia::PointCloud& cloud = this->Cloud;
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < cloud.Positions.size(); ++k)
-  {
-    if (inside(cloud.Positions[k]))
-    {
-      cloud.Positions[kept] = cloud.Positions[k];
-      cloud.Normals[kept] = cloud.Normals[k];
-      cloud.Ids[kept] = cloud.Ids[k];
-      if (!cloud.Weights.empty())
-      {
-        cloud.Weights[kept] = cloud.Weights[k];
-      }
-      ++kept;
-    }
-  }
-  this->OutsideBounds = static_cast<vtkIdType>(cloud.Positions.size() - kept);
-  cloud.Positions.resize(kept);
-  cloud.Normals.resize(kept);
-  cloud.Ids.resize(kept);
-  cloud.Weights.resize(cloud.Weights.empty() ? 0 : kept);
-  std::size_t keptRows = 0;
-  for (std::size_t k = 0; k < cloud.ExtraPositions.size(); ++k)
-  {
-    if (inside(cloud.ExtraPositions[k]))
-    {
-      cloud.ExtraPositions[keptRows] = cloud.ExtraPositions[k];
-      cloud.ExtraValues[keptRows] = cloud.ExtraValues[k];
-      ++keptRows;
-    }
-  }
-  this->OutsideBounds += static_cast<vtkIdType>(cloud.ExtraPositions.size() - keptRows);
-  cloud.ExtraPositions.resize(keptRows);
-  cloud.ExtraValues.resize(keptRows);
-  if (kept == 0)
-  {
-    this->Refusal = text("None of the points lies in the ModelBounds from ", triple(this->Origin),
-      " to ", triple(this->Upper), ".");
-  }
 }
 
 /// What is kept between updates: the problem and its solution, each with what it depends on.
@@ -395,11 +64,11 @@ class vtkIPIAImplicitFitter::Internals
 public:
   vtkNew<vtkIPIAImplicitFunction> Function;
 
-  std::unique_ptr<Problem> Current;
+  std::unique_ptr<ipia::FitProblem> Current;
   std::vector<vtkMTimeType> ProblemIdentity;
 
-  std::unique_ptr<PlacedFit<2>> Planar;
-  std::unique_ptr<PlacedFit<3>> Spatial;
+  std::unique_ptr<ipia::FitSolution<2>> Planar;
+  std::unique_ptr<ipia::FitSolution<3>> Spatial;
   vtkNew<vtkImageData> ControlLattice;
   std::vector<vtkMTimeType> FitIdentity;
   std::vector<double> FitParameters;
@@ -419,7 +88,7 @@ public:
   }
 
   template <int Dim>
-  std::unique_ptr<PlacedFit<Dim>>& Slot()
+  std::unique_ptr<ipia::FitSolution<Dim>>& Slot()
   {
     if constexpr (Dim == 2)
     {
@@ -437,13 +106,15 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
   , GridSize{ 0, 0, 0 }
   , SampleDimensions{ 0, 0, 0 }
   , Dimension(0)
-  , NormalConstraint(TwoSidedOffset)
+  , NormalConstraint(Gradient)
   , OffsetDistance(0)
   , OffsetValue(0)
   , InwardOffsetDistance(0)
   , InwardOffsetValue(0)
-  , Solver(ProgressiveIteration)
-  , NumberOfLevels(1)
+  , FairingWeight(-1)
+  , FairingOrder(2)
+  , Solver(ConjugateGradient)
+  , NumberOfLevels(0)
   , MaximumNumberOfIterations(0)
   , Tolerance(0)
   , StoppingRule(RelativeResidual)
@@ -464,6 +135,33 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
 }
 
 vtkIPIAImplicitFitter::~vtkIPIAImplicitFitter() = default;
+
+ipia::FitParameters vtkIPIAImplicitFitter::Parameters() const
+{
+  ipia::FitParameters p;
+  std::copy_n(this->ModelBounds, 6, p.ModelBounds.begin());
+  p.Padding = this->Padding;
+  std::copy_n(this->GridSize, 3, p.GridSize.begin());
+  std::copy_n(this->SampleDimensions, 3, p.SampleDimensions.begin());
+  p.Dimension = this->Dimension;
+  p.NormalConstraint = this->NormalConstraint;
+  p.OffsetDistance = this->OffsetDistance;
+  p.OffsetValue = this->OffsetValue;
+  p.InwardOffsetDistance = this->InwardOffsetDistance;
+  p.InwardOffsetValue = this->InwardOffsetValue;
+  p.FairingWeight = this->FairingWeight;
+  p.FairingOrder = this->FairingOrder;
+  p.Solver = this->Solver;
+  p.NumberOfLevels = this->NumberOfLevels;
+  p.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
+  p.Tolerance = this->Tolerance;
+  p.StoppingRule = this->StoppingRule;
+  p.StepSize = this->StepSize;
+  p.GenerateGradient = this->GenerateGradient;
+  p.GenerateSupport = this->GenerateSupport;
+  p.OutputScalarType = this->OutputScalarType;
+  return p;
+}
 
 void vtkIPIAImplicitFitter::SetExtraRowsConnection(vtkAlgorithmOutput* output)
 {
@@ -543,11 +241,11 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
   {
     return;
   }
-  this->State->Current = std::make_unique<Problem>();
+  this->State->Current = std::make_unique<ipia::FitProblem>();
   this->State->Current->Cloud.gather([this](int index, vtkDataObject* data)
     { return this->GetInputArrayToProcess(index, data); },
     points, extraRows);
-  this->State->Current->Prepare(*this);
+  this->State->Current->Prepare(this->Parameters());
   this->State->ProblemIdentity = identity;
 }
 
@@ -558,7 +256,7 @@ int vtkIPIAImplicitFitter::RequestInformation(
   vtkInformation* imageInfo = output->GetInformationObject(0);
   this->BringInputUpToDate(imageInfo);
   this->PrepareProblem(input);
-  const Problem& problem = *this->State->Current;
+  const ipia::FitProblem& problem = *this->State->Current;
 
   imageInfo->Set(Pipeline::WHOLE_EXTENT(), problem.WholeExtent, 6);
   imageInfo->Set(vtkDataObject::ORIGIN(), problem.Origin, 3);
@@ -607,32 +305,6 @@ int vtkIPIAImplicitFitter::RequestUpdateExtent(
 
 namespace
 {
-template <int Dim>
-ipia::Points<Dim> toLocal(
-  const ipia::Placement<Dim>& place, const std::vector<std::array<double, 3>>& positions)
-{
-  ipia::Points<Dim> local(Dim, static_cast<Eigen::Index>(positions.size()));
-  for (std::size_t k = 0; k < positions.size(); ++k)
-  {
-    local.col(static_cast<Eigen::Index>(k)) = place.toLocal(positions[k].data());
-  }
-  return local;
-}
-
-ipia::Vector toVector(const std::vector<double>& values)
-{
-  return Eigen::Map<const ipia::Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-/// The given distance for all points, or the automatic one, drawn in where other points are near.
-ipia::Vector offsetDistances(
-  const ipia::PointCloud& cloud, double given, double automatic, double side)
-{
-  return given > 0
-    ? ipia::Vector::Constant(static_cast<Eigen::Index>(cloud.Positions.size()), given)
-    : toVector(cloud.offsetDistances(automatic, side));
-}
-
 void addResult(vtkFieldData* field, const char* name, double value)
 {
   vtkNew<vtkDoubleArray> array;
@@ -670,6 +342,8 @@ void vtkIPIAImplicitFitter::ResetResults()
   this->NumberOfIterationsUsed = 0;
   this->StepSizeUsed = this->Energy = this->AverageError = this->MaximumError = 0;
   this->Oscillation = this->OffsetDistanceUsed = 0;
+  this->NumberOfLevelsUsed = 0;
+  this->NoiseFound = this->SmoothingLengthUsed = 0;
   std::fill_n(this->GridSizeUsed, 3, 0);
   vtkMath::UninitializeBounds(this->ModelBoundsUsed);
 }
@@ -687,96 +361,42 @@ bool vtkIPIAImplicitFitter::ReportProgress(double share)
 template <int Dim>
 bool vtkIPIAImplicitFitter::FitInDimension()
 {
-  const Problem& problem = *this->State->Current;
-  const ipia::PointCloud& cloud = problem.Cloud;
-  auto place = ipia::Placement<Dim>::withFlatAxis(problem.FlatAxis);
-  std::copy_n(problem.Origin, 3, place.Origin.begin());
-  ipia::Lattice<Dim> lattice;
-  for (int a = 0; a < Dim; ++a)
-  {
-    const auto i = static_cast<std::size_t>(a);
-    lattice.Size[i] = problem.GridSize[place.Axis[i]];
-    lattice.Spacing[a] = problem.Spacing[place.Axis[i]];
-  }
-
-  ipia::FitInput<Dim> input;
-  input.Positions = toLocal(place, cloud.Positions);
-  input.Normals.resize(Dim, input.Positions.cols());
-  for (Eigen::Index k = 0; k < input.Normals.cols(); ++k)
-  {
-    for (int a = 0; a < Dim; ++a)
-    {
-      input.Normals(a, k) = cloud.Normals[static_cast<std::size_t>(k)][static_cast<std::size_t>(
-        place.Axis[static_cast<std::size_t>(a)])];
-    }
-  }
-  input.Weights = toVector(cloud.Weights);
-  input.ExtraPositions = toLocal(place, cloud.ExtraPositions);
-  input.ExtraValues = toVector(cloud.ExtraValues);
-
-  const double automatic = OffsetInSpacings * lattice.Spacing.maxCoeff();
-  this->OffsetDistanceUsed = this->OffsetDistance > 0 ? this->OffsetDistance : automatic;
-  input.OutwardDistance = offsetDistances(cloud, this->OffsetDistance, automatic, 1);
-  input.OutwardValue = this->OffsetValue;
-  if (this->NormalConstraint == TwoSidedOffset)
-  {
-    const double inward =
-      this->InwardOffsetDistance > 0 ? this->InwardOffsetDistance : this->OffsetDistance;
-    input.InwardDistance = offsetDistances(cloud, inward, automatic, -1);
-    input.InwardValue = this->InwardOffsetValue > 0 ? this->InwardOffsetValue : this->OffsetValue;
-  }
-
-  ipia::FitOptions options;
-  options.Solver.Type = this->Solver == ConjugateGradient ? ipia::SolverType::ConjugateGradient
-                                                          : ipia::SolverType::ProgressiveIteration;
-  options.Solver.MaximumNumberOfIterations = this->MaximumNumberOfIterations > 0
-    ? this->MaximumNumberOfIterations
-    : this->Solver == ConjugateGradient ? AutomaticConjugateIterations
-                                        : AutomaticProgressiveIterations;
-  options.Solver.Tolerance = this->Tolerance;
-  options.Solver.Rule = this->StoppingRule == EnergyChange ? ipia::StoppingRule::EnergyChange
-                                                           : ipia::StoppingRule::RelativeResidual;
-  options.Solver.StepSize = this->StepSize;
-  options.FarField.Magnitude = this->OffsetValue > 0 ? this->OffsetValue : this->OffsetDistanceUsed;
-
   const auto progress = [this](double share)
   { return this->ReportProgress(ProgressOfRows + (ProgressOfFit - ProgressOfRows) * share); };
   auto& slot = this->State->Slot<Dim>();
-  slot.reset(
-    new PlacedFit<Dim>{ place, ipia::fitImplicit<Dim>(lattice, input, options, progress) });
-  const ipia::FitResult<Dim>& result = slot->Result;
-  if (result.Solver.Status == ipia::SolverStatus::Diverged)
+  slot = std::make_unique<ipia::FitSolution<Dim>>(
+    ipia::solve<Dim>(*this->State->Current, this->Parameters(), progress));
+  if (!slot->Error.empty())
   {
-    vtkErrorMacro("The iteration diverges with StepSize "
-      << result.Solver.StepSize << ": the energy rose in iteration "
-      << result.Solver.NumberOfIterations << ". Reduce StepSize, or leave it 0 for "
-      << "2 / max_i sum_k w_k B_i(x_k).");
+    vtkErrorMacro(<< slot->Error);
   }
-  if (result.Solver.Status != ipia::SolverStatus::Done)
+  if (!slot->isValid())
   {
     return false;
   }
-  if (result.Function.farField().NumberOfMixedRegions > 0)
+  if (!slot->Warning.empty())
   {
-    vtkWarningMacro(
-      << result.Function.farField().NumberOfMixedRegions
-      << " region(s) without data border on both sides of the surface, which is open "
-         "there or has wide holes; f takes the sign of the larger share of the border.");
+    vtkWarningMacro(<< slot->Warning);
   }
+  const ipia::FitResult<Dim>& result = slot->Result;
   this->NumberOfIterationsUsed = result.Solver.NumberOfIterations;
   this->StepSizeUsed = result.Solver.StepSize;
   this->Energy = result.Solver.Energy;
   this->AverageError = result.AverageError;
   this->MaximumError = result.MaximumError;
   this->Oscillation = result.Oscillation;
-  ipia::toControlLattice(result.Function, place, this->State->ControlLattice);
+  this->OffsetDistanceUsed = slot->OffsetDistance;
+  this->NumberOfLevelsUsed = slot->NumberOfLevels;
+  this->NoiseFound = slot->Noise;
+  this->SmoothingLengthUsed = slot->SmoothingLength;
+  ipia::toControlLattice(result.Function, slot->Place, this->State->ControlLattice);
   return true;
 }
 
 bool vtkIPIAImplicitFitter::Fit()
 {
   Internals& state = *this->State;
-  const Problem& problem = *state.Current;
+  const ipia::FitProblem& problem = *state.Current;
   // What the fit depends on, to reuse it when only the samples change.
   std::vector<vtkMTimeType> identity = state.ProblemIdentity;
   identity.front() = 0; // the filter's own time covers more than the fit's parameters
@@ -785,9 +405,11 @@ bool vtkIPIAImplicitFitter::Fit()
     appendArrayIdentity(array, identity);
   }
   std::vector<double> parameters{ this->OffsetDistance, this->OffsetValue,
-    this->InwardOffsetDistance, this->InwardOffsetValue, this->Tolerance, this->StepSize };
-  for (int value : { this->NormalConstraint, this->Solver, this->NumberOfLevels,
-         this->MaximumNumberOfIterations, this->StoppingRule, problem.FlatAxis })
+    this->InwardOffsetDistance, this->InwardOffsetValue, this->FairingWeight, this->Tolerance,
+    this->StepSize };
+  for (int value : { this->NormalConstraint, this->FairingOrder, this->Solver, this->NumberOfLevels,
+         this->MaximumNumberOfIterations, this->StoppingRule,
+         static_cast<int>(this->GenerateSupport), problem.FlatAxis })
   {
     parameters.push_back(value);
   }
@@ -852,8 +474,8 @@ void vtkIPIAImplicitFitter::DiscardFit()
 template <int Dim, typename ArrayType>
 bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
 {
-  const Problem& problem = *this->State->Current;
-  const PlacedFit<Dim>& fit = *this->State->Slot<Dim>();
+  const ipia::FitProblem& problem = *this->State->Current;
+  const ipia::FitSolution<Dim>& fit = *this->State->Slot<Dim>();
   ipia::AxisPositions<Dim> positions;
   for (int a = 0; a < Dim; ++a)
   {
@@ -970,6 +592,9 @@ void vtkIPIAImplicitFitter::WriteResults(vtkFieldData* field) const
   addResult(field, "MaximumError", this->MaximumError);
   addResult(field, "Oscillation", this->Oscillation);
   addResult(field, "OffsetDistanceUsed", this->OffsetDistanceUsed);
+  addResult(field, "NumberOfLevelsUsed", this->NumberOfLevelsUsed);
+  addResult(field, "NoiseFound", this->NoiseFound);
+  addResult(field, "SmoothingLengthUsed", this->SmoothingLengthUsed);
   vtkNew<vtkIntArray> grid;
   grid->SetName("GridSizeUsed");
   grid->SetNumberOfComponents(3);
@@ -1009,7 +634,7 @@ int vtkIPIAImplicitFitter::RequestData(
   clear();
 
   this->PrepareProblem(input);
-  const Problem& problem = *this->State->Current;
+  const ipia::FitProblem& problem = *this->State->Current;
   if (!problem.Refusal.empty())
   {
     this->DiscardFit();
@@ -1051,7 +676,7 @@ int vtkIPIAImplicitFitter::RequestData(
 void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const auto triple = [](const auto* v) { return text("(", v[0], ", ", v[1], ", ", v[2], ")"); };
+  using ipia::triple;
   const double* b = this->ModelBounds;
   os << indent << "ModelBounds: (" << b[0] << ", " << b[1] << ", " << b[2] << ", " << b[3] << ", "
      << b[4] << ", " << b[5] << ")\n";
@@ -1064,6 +689,8 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OffsetValue: " << this->OffsetValue << "\n";
   os << indent << "InwardOffsetDistance: " << this->InwardOffsetDistance << "\n";
   os << indent << "InwardOffsetValue: " << this->InwardOffsetValue << "\n";
+  os << indent << "FairingWeight: " << this->FairingWeight << "\n";
+  os << indent << "FairingOrder: " << this->FairingOrder << "\n";
   os << indent << "Solver: " << this->Solver << "\n";
   os << indent << "NumberOfLevels: " << this->NumberOfLevels << "\n";
   os << indent << "MaximumNumberOfIterations: " << this->MaximumNumberOfIterations << "\n";
@@ -1080,5 +707,8 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumError: " << this->MaximumError << "\n";
   os << indent << "Oscillation: " << this->Oscillation << "\n";
   os << indent << "OffsetDistanceUsed: " << this->OffsetDistanceUsed << "\n";
+  os << indent << "NumberOfLevelsUsed: " << this->NumberOfLevelsUsed << "\n";
+  os << indent << "NoiseFound: " << this->NoiseFound << "\n";
+  os << indent << "SmoothingLengthUsed: " << this->SmoothingLengthUsed << "\n";
   os << indent << "GridSizeUsed: " << triple(this->GridSizeUsed) << "\n";
 }

@@ -95,6 +95,11 @@ class vtkFieldData;
 class vtkIPIAImplicitFunction;
 class vtkPolyData;
 
+namespace ipia
+{
+struct FitParameters;
+}
+
 class VTKFILTERSIPIA_EXPORT vtkIPIAImplicitFitter : public vtkImageAlgorithm
 {
 public:
@@ -159,18 +164,20 @@ public:
   /// How the normals enter.
   enum NormalConstraints
   {
-    OutwardOffset = 0, ///< f(p + sigma n) = epsilon, as in the 2019 paper
-    TwoSidedOffset = 1 ///< and f(p - sigma n) = -epsilon (default)
+    OutwardOffset = 0,  ///< f(p + sigma n) = epsilon, as in the 2019 paper
+    TwoSidedOffset = 1, ///< and f(p - sigma n) = -epsilon
+    Gradient = 2        ///< grad f(p) = n (default)
   };
 
   ///@{
   /**
-   * The rows that a normal gives. Default TwoSidedOffset.
+   * The rows that a normal gives. Default Gradient.
    */
-  vtkSetClampMacro(NormalConstraint, int, OutwardOffset, TwoSidedOffset);
+  vtkSetClampMacro(NormalConstraint, int, OutwardOffset, Gradient);
   vtkGetMacro(NormalConstraint, int);
   void SetNormalConstraintToOutwardOffset() { this->SetNormalConstraint(OutwardOffset); }
   void SetNormalConstraintToTwoSidedOffset() { this->SetNormalConstraint(TwoSidedOffset); }
+  void SetNormalConstraintToGradient() { this->SetNormalConstraint(Gradient); }
   ///@}
 
   ///@{
@@ -201,16 +208,36 @@ public:
   vtkGetMacro(InwardOffsetValue, double);
   ///@}
 
+  ///@{
+  /**
+   * Weight tau of the fairing energy of levels finer than 32 cells, tau sum |D^r c|^2 over
+   * differences of neighbouring coefficients, where the rows of an occupied cell weigh about 1 in
+   * all: the energy tau h^(2 r - dimension) integral |D^r f|^2. 0: none; -1 (the default):
+   * automatic, 1e-4, and more on noisy data, by cross-validation.
+   */
+  vtkSetClampMacro(FairingWeight, double, -1.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(FairingWeight, double);
+  ///@}
+
+  ///@{
+  /**
+   * Order r of the derivatives in a given FairingWeight's energy: 1 (membrane) or 2 (thin plate,
+   * the default).
+   */
+  vtkSetClampMacro(FairingOrder, int, 1, 2);
+  vtkGetMacro(FairingOrder, int);
+  ///@}
+
   /// The iteration.
   enum Solvers
   {
-    ProgressiveIteration = 0, ///< C <- C + mu B^T W (b - B C) (default)
-    ConjugateGradient = 1     ///< the same limit in fewer iterations
+    ProgressiveIteration = 0, ///< C <- C + mu B^T W (b - B C); a single level with offset rows only
+    ConjugateGradient = 1     ///< the same limit in fewer iterations (default)
   };
 
   ///@{
   /**
-   * The solver. Default ProgressiveIteration.
+   * The solver. Default ConjugateGradient.
    */
   vtkSetClampMacro(Solver, int, ProgressiveIteration, ConjugateGradient);
   vtkGetMacro(Solver, int);
@@ -220,16 +247,17 @@ public:
 
   ///@{
   /**
-   * Number of lattice levels. 1 (the default) is the papers' single level, and so far the only
-   * value.
+   * Number of lattice levels. 0 (the default): as many as halve the lattice down to 16 cells. 1: a
+   * single one, with offset rows exactly the method of the 2019 paper.
    */
-  vtkSetClampMacro(NumberOfLevels, int, 1, 1);
+  vtkSetClampMacro(NumberOfLevels, int, 0, 20);
   vtkGetMacro(NumberOfLevels, int);
   ///@}
 
   ///@{
   /**
-   * Iterations at most. 0 (the default): 100 progressive iterations, 15 of conjugate gradients.
+   * Iterations at most, of the finest level. 0 (the default): 12; on a single level with offset
+   * rows 100 progressive iterations or 15 of conjugate gradients.
    */
   vtkSetClampMacro(MaximumNumberOfIterations, int, 0, VTK_INT_MAX);
   vtkGetMacro(MaximumNumberOfIterations, int);
@@ -238,7 +266,7 @@ public:
   ///@{
   /**
    * The iteration ends when the measure of StoppingRule falls below this. 0 (the default): all
-   * iterations are done.
+   * given iterations are done; where their number is automatic, the hierarchy stops at 1e-3.
    */
   vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Tolerance, double);
@@ -319,6 +347,9 @@ public:
   vtkGetMacro(MaximumError, double);
   vtkGetMacro(Oscillation, double);
   vtkGetMacro(OffsetDistanceUsed, double);
+  vtkGetMacro(NumberOfLevelsUsed, int);
+  vtkGetMacro(NoiseFound, double);
+  vtkGetMacro(SmoothingLengthUsed, double);
   vtkGetVector3Macro(GridSizeUsed, int);
   vtkGetVector6Macro(ModelBoundsUsed, double);
   ///@}
@@ -355,6 +386,8 @@ protected:
   double OffsetValue;
   double InwardOffsetDistance;
   double InwardOffsetValue;
+  double FairingWeight;
+  int FairingOrder;
   int Solver;
   int NumberOfLevels;
   int MaximumNumberOfIterations;
@@ -372,6 +405,9 @@ protected:
   double MaximumError;
   double Oscillation;
   double OffsetDistanceUsed;
+  int NumberOfLevelsUsed;
+  double NoiseFound;
+  double SmoothingLengthUsed;
   int GridSizeUsed[3];
   double ModelBoundsUsed[6];
 
@@ -379,8 +415,9 @@ private:
   vtkIPIAImplicitFitter(const vtkIPIAImplicitFitter&) = delete;
   void operator=(const vtkIPIAImplicitFitter&) = delete;
 
-  class Problem;
   class Internals;
+
+  ipia::FitParameters Parameters() const;
 
   void BringInputUpToDate(vtkInformation* outInfo);
   void PrepareProblem(vtkInformationVector** input);

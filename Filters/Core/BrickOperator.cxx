@@ -593,6 +593,26 @@ void BrickOperator<Dim>::diagonal(std::vector<float>& diagonal) const
 }
 
 template <int Dim>
+double BrickOperator<Dim>::energy() const
+{
+  std::vector<float> values;
+  this->evaluateWithGradient(this->Bricks.coefficients(), values);
+  double sum = 0;
+  for (const HermiteRow<Dim>& row : this->Rows.Rows)
+  {
+    const float* at = values.data() + static_cast<std::int64_t>(row.Source) * (1 + Dim);
+    const double miss = at[0] - row.Value;
+    sum += row.Weight * miss * miss;
+    for (int a = 0; a < Dim; ++a)
+    {
+      const double slope = at[1 + a] - row.Slope[a];
+      sum += static_cast<double>(row.GradientWeight) * this->AxisScale[a] * slope * slope;
+    }
+  }
+  return sum;
+}
+
+template <int Dim>
 void BrickOperator<Dim>::density(std::vector<float>& sums) const
 {
   sums.assign(static_cast<std::size_t>(this->Bricks.numberOfActiveBricks()) * BrickSize<Dim>, 0.F);

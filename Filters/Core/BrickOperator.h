@@ -47,6 +47,9 @@ public:
   /// @a diagonal of A.
   void diagonal(std::vector<float>& diagonal) const;
 
+  /// sum_k w_k (f - v)^2 + g_k sum_a s_a^2 (f_a - slope)^2 at the lattice's coefficients.
+  double energy() const;
+
   /// @a sums_i = sum_k w_k B_i(x_k).
   void density(std::vector<float>& sums) const;
 

@@ -106,7 +106,8 @@ std::vector<Sample<Dim>> sortedSamples(const Lattice<Dim>& lattice, const Hermit
     }
     sample.HasNormal = !sample.Normal.isZero(0);
     sample.Value = extra ? input.ExtraValues[k - n] : 0;
-    sample.Weight = extra || input.Weights.size() == 0 ? 1 : input.Weights[k];
+    const Vector& weights = extra ? input.ExtraWeights : input.Weights;
+    sample.Weight = weights.size() == 0 ? 1 : weights[extra ? k - n : k];
     samples.push_back(sample);
   }
   return samples;
@@ -372,7 +373,7 @@ void weighRows(const BrickLattice<Dim>& bricks, HermiteRows<Dim>& rows, bool pre
 /// Conjugate gradients with the diagonal as preconditioner, on the active coefficients.
 template <int Dim>
 void solveLevel(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
-  double tolerance, int threads, LevelReport& report)
+  double tolerance, StoppingRule rule, int threads, LevelReport& report)
 {
   std::vector<float> r, p, q, inverse;
   system.diagonal(inverse);
@@ -401,8 +402,10 @@ void solveLevel(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int
       return sum;
     });
   const double first = rz;
+  report.ResidualHistory.assign(1, first > 0 ? 1. : 0.);
+  double measure = report.ResidualHistory.front();
   float* c = bricks.coefficients().data();
-  while (report.NumberOfIterations < iterations && rz > tolerance * tolerance * first)
+  while (report.NumberOfIterations < iterations && rz > 0 && !(measure < tolerance))
   {
     system.product(p, q);
     const double curvature = parallelSum(n, threads,
@@ -435,7 +438,10 @@ void solveLevel(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int
         return sum;
       });
     const auto ratio = static_cast<float>(next / rz);
+    const double energyChange = rz * static_cast<double>(step);
     rz = next;
+    report.ResidualHistory.push_back(std::sqrt(rz / first));
+    measure = rule == StoppingRule::RelativeResidual ? report.ResidualHistory.back() : energyChange;
     parallelChunks(n, threads,
       [&](std::int64_t begin, std::int64_t end)
       {
@@ -447,7 +453,6 @@ void solveLevel(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int
       });
     ++report.NumberOfIterations;
   }
-  report.RelativeResidual = first > 0 ? std::sqrt(rz / first) : 0;
 }
 
 /// Occupied cells hold at least this many points where the data alone determine f.
@@ -505,7 +510,7 @@ LevelReport solveOne(const std::vector<Level<Dim>>& levels, std::vector<BrickLat
     makeRows(level, bricks[l], std::max(gradient, std::min(relative, MostSmoothingGradient)));
   weighRows(bricks[l], rows, l > 0, options, threads);
   FairingWeights fairing;
-  fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : 0);
+  fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : options.BandMembrane);
   fairing.ThinPlate =
     static_cast<float>(std::max(level.Dense ? options.DenseThinPlate : options.BandThinPlate,
       SmoothingThinPlate * relative * relative * relative));
@@ -515,11 +520,18 @@ LevelReport solveOne(const std::vector<Level<Dim>>& levels, std::vector<BrickLat
   report.Spacing = level.Grid.Spacing.maxCoeff();
   report.NumberOfRows = static_cast<std::int64_t>(rows.Rows.size());
   report.NumberOfActiveCoefficients = bricks[l].numberOfActiveCoefficients();
-  const int iterations = level.Dense ? options.DenseIterations
-    : finest                         ? options.FinestIterations
-                                     : options.BandIterations;
-  solveLevel(system, bricks[l], iterations,
-    level.Dense ? options.DenseTolerance : options.BandTolerance, threads, report);
+  const int iterations = finest ? options.FinestIterations
+    : level.Dense               ? options.DenseIterations
+                                : options.BandIterations;
+  const double tolerance = finest ? options.FinestTolerance
+    : level.Dense                 ? options.DenseTolerance
+                                  : options.BandTolerance;
+  solveLevel(system, bricks[l], iterations, tolerance,
+    finest ? options.Rule : StoppingRule::RelativeResidual, threads, report);
+  if (finest)
+  {
+    report.Energy = system.energy();
+  }
   report.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

@@ -13,7 +13,7 @@
 #define ipia_HierarchicalFit_h
 
 #include "BrickLattice.h"
-#include "ImplicitSpline.h"
+#include "LeastSquaresSolver.h"
 
 #include <vector>
 
@@ -27,8 +27,9 @@ struct HermiteInput
   Points<Dim> Normals;   ///< Dim x n, unit length, towards f > 0; a zero column has no gradient row
   Vector Weights;        ///< n, >= 0; empty: 1
 
-  Points<Dim> ExtraPositions; ///< Dim x m: points of weight 1 ...
-  Vector ExtraValues;         ///< ... where f shall take these values
+  Points<Dim> ExtraPositions; ///< Dim x m: points ...
+  Vector ExtraValues;         ///< ... where f shall take these values ...
+  Vector ExtraWeights;        ///< ... with these weights; empty: 1
 };
 
 /// The constants of the method; lengths in knot spacings of the level, weights without unit.
@@ -39,15 +40,18 @@ struct HierarchicalOptions
   int DenseCells = 32; ///< levels with no more cells along their longest side are dense
 
   /// Share of the gradient rows, g: h grad f = h n has the weight g^2 of f = 0.
-  double DenseGradient = 1, BandGradient = 0.3, FinestGradient = 0.2;
+  double DenseGradient = 1, BandGradient = 0.3, FinestGradient = 0.3;
   double DenseMembrane = 0.01;  ///< tau_1 of the dense levels
   double DenseThinPlate = 1e-3; ///< tau_2 of the dense levels
-  double BandThinPlate = 3e-4;  ///< tau_2 of the others
+  double BandMembrane = 0;      ///< tau_1 of the others
+  double BandThinPlate = 1e-4;  ///< tau_2 of the others
   int DenseIterations = 20;
   double DenseTolerance = 1e-5;
   int BandIterations = 12;
   int FinestIterations = 12;
   double BandTolerance = 1e-3;
+  double FinestTolerance = 1e-3;
+  StoppingRule Rule = StoppingRule::RelativeResidual; ///< of the finest level
   /// Residuals beyond this many standard deviations of the coarser prediction lose weight.
   double RobustFactor = 4;
   /// Smoothing length, lengths in the units of the points: weights of gradient rows and thin plate
@@ -64,7 +68,10 @@ struct LevelReport
   std::int64_t NumberOfRows = 0;
   std::int64_t NumberOfActiveCoefficients = 0;
   int NumberOfIterations = 0;
-  double RelativeResidual = 0;
+  /// The preconditioned residual before the first and after each iteration, relative to the first.
+  std::vector<double> ResidualHistory;
+  /// sum_k w_k r_k^2 over all rows, value and gradient, with the weights of the level.
+  double Energy = 0;
   double Seconds = 0;
 };
 

@@ -145,6 +145,32 @@ double oscillation(const Lattice<Dim>& lattice, const Vector& coefficients)
 }
 
 template <int Dim>
+Vector scaledSupport(const Lattice<Dim>& lattice, const Points<Dim>& positions, int threads)
+{
+  const Vector none = Vector::Zero(positions.cols());
+  const ConstraintRows<Dim> rows(lattice, positions, none, {});
+  Vector support;
+  CollocationOperator<Dim>(rows, threads).support(support);
+  scaleToMedian(lattice, positions, resolveThreads(threads), support);
+  return support;
+}
+
+template <int Dim>
+FitResult<Dim> summarize(ImplicitSpline<Dim> function, const SolverResult& solved, Vector support,
+  const Points<Dim>& positions, int threads)
+{
+  FitResult<Dim> result{ std::move(function), solved, std::move(support), 0, 0, 0 };
+  const Vector atPoints = valuesAt(result.Function, positions, threads);
+  if (atPoints.size())
+  {
+    result.AverageError = atPoints.squaredNorm() / static_cast<double>(atPoints.size());
+    result.MaximumError = atPoints.cwiseAbs().maxCoeff();
+  }
+  result.Oscillation = oscillation(result.Function.lattice(), result.Function.coefficients());
+  return result;
+}
+
+template <int Dim>
 FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
   const FitOptions& options, const ProgressCallback& progress)
 {
@@ -172,22 +198,20 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
       lattice, occupancy, coefficients, outside, inside, input.Positions, farOptions);
   }
 
-  FitResult<Dim> result{ ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)),
-    solved, std::move(support), 0, 0, 0 };
-  const Vector atPoints = valuesAt(result.Function, input.Positions, options.Threads);
-  if (atPoints.size())
-  {
-    result.AverageError = atPoints.squaredNorm() / static_cast<double>(atPoints.size());
-    result.MaximumError = atPoints.cwiseAbs().maxCoeff();
-  }
-  result.Oscillation = oscillation(lattice, result.Function.coefficients());
-  return result;
+  return summarize(ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)), solved,
+    std::move(support), input.Positions, options.Threads);
 }
 
 template struct FitResult<2>;
 template struct FitResult<3>;
 template double oscillation<2>(const Lattice<2>&, const Vector&);
 template double oscillation<3>(const Lattice<3>&, const Vector&);
+template Vector scaledSupport<2>(const Lattice<2>&, const Points<2>&, int);
+template Vector scaledSupport<3>(const Lattice<3>&, const Points<3>&, int);
+template FitResult<2> summarize<2>(
+  ImplicitSpline<2>, const SolverResult&, Vector, const Points<2>&, int);
+template FitResult<3> summarize<3>(
+  ImplicitSpline<3>, const SolverResult&, Vector, const Points<3>&, int);
 template FitResult<2> fitImplicit<2>(
   const Lattice<2>&, const FitInput<2>&, const FitOptions&, const ProgressCallback&);
 template FitResult<3> fitImplicit<3>(

@@ -26,6 +26,9 @@ template <int Dim>
 class ImplicitSpline
 {
 public:
+  /// Without coefficients; to be assigned to.
+  ImplicitSpline() = default;
+
   ImplicitSpline(const Lattice<Dim>& lattice, Vector coefficients, FarField farField = {});
 
   const Lattice<Dim>& lattice() const { return this->ControlLattice; }

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "IPIAFitProblem.h"
+
+#include "Core/AutomaticLattice.h"
+#include "IPIAControlLattice.h"
+#include "IPIAText.h"
+#include "vtkIPIAImplicitFitter.h"
+
+#include "vtksys/SystemInformation.hxx"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ipia
+{
+namespace
+{
+/// The automatic knot spacing in units of the point spacing: one point per occupied cell for the
+/// hierarchy, about 2.5 where one level must hold together by itself.
+constexpr double HierarchicalSpacing = 1, ClassicSpacing = 1.6;
+/// Limits of an automatic lattice: knot spacings along the longest side of the points.
+constexpr double FewestSpacings = 8, MostSpacings = 256;
+/// No more samples than this unless the user asks for them.
+constexpr double MostAutomaticSamples = 268435456; // 2^28
+/// Share of the machine's memory that a fit may be expected to take.
+constexpr double MemoryShare = 0.9;
+/// Bytes that the fit needs per coefficient and per row, all its arrays together.
+constexpr double BytesPerCoefficient = 96, BytesPerRow = 160;
+
+double memoryOfMachine()
+{
+  vtksys::SystemInformation information;
+  information.RunMemoryCheck();
+  return 1024.0 * static_cast<double>(information.GetHostMemoryTotal());
+}
+}
+
+bool FitParameters::isClassic() const
+{
+  return this->NumberOfLevels == 1 && this->NormalConstraint != vtkIPIAImplicitFitter::Gradient;
+}
+
+void FitProblem::Prepare(const FitParameters& parameters)
+{
+  this->Refusal = this->Cloud.Refusal;
+  const auto step = [this](auto&& action)
+  {
+    if (this->Refusal.empty())
+    {
+      action();
+    }
+  };
+  step([&] { this->CheckCombination(parameters); });
+  step([&] { this->ChooseDimension(parameters); });
+  step(
+    [&]
+    {
+      if (this->Dimension == 2)
+      {
+        this->ChooseLattice<2>(parameters);
+      }
+      else
+      {
+        this->ChooseLattice<3>(parameters);
+      }
+    });
+  step([&] { this->ChooseSamples(parameters); });
+  step([&] { this->CheckMemory(parameters); });
+  step([&] { this->DropPointsOutside(); });
+  if (!this->Refusal.empty())
+  {
+    const int none[6] = { 0, -1, 0, -1, 0, -1 };
+    std::copy_n(none, 6, this->WholeExtent);
+  }
+}
+
+void FitProblem::CheckCombination(const FitParameters& parameters)
+{
+  if (!parameters.isClassic() && parameters.Solver == vtkIPIAImplicitFitter::ProgressiveIteration)
+  {
+    this->Refusal =
+      "ProgressiveIteration solves a single level with offset rows. Set NumberOfLevels to "
+      "1 and NormalConstraint to an offset, or Solver to ConjugateGradient.";
+  }
+  else if (!parameters.isClassic() && parameters.StepSize > 0)
+  {
+    this->Refusal =
+      "StepSize belongs to ProgressiveIteration on a single level with offset rows; the "
+      "hierarchy has none. Leave it 0.";
+  }
+  else if (parameters.isClassic() && parameters.FairingWeight > 0)
+  {
+    this->Refusal =
+      "FairingWeight belongs to the hierarchy; a single level with offset rows has no "
+      "fairing. Leave it -1, or set NumberOfLevels to 0.";
+  }
+}
+
+void FitProblem::ChooseDimension(const FitParameters& parameters)
+{
+  const int flat = this->Cloud.flatAxis();
+  if (parameters.Dimension == 2 && flat < 0)
+  {
+    const int thin = this->Cloud.axisWithoutExtent();
+    this->Refusal = thin < 0
+      ? "Dimension is 2, but the points do not lie in a plane perpendicular to an axis."
+      : text("Dimension is 2, but normals point out of the plane of the points (along axis ", thin,
+          ").");
+    return;
+  }
+  this->Dimension = parameters.Dimension == 3 || flat < 0 ? 3 : 2;
+  this->FlatAxis = this->Dimension == 2 ? flat : -1;
+  if (this->Dimension == 3 && this->Cloud.isLine())
+  {
+    this->Refusal = text("All ", this->Cloud.Positions.size(),
+      " points lie on a line; a surface needs points off it.");
+  }
+}
+
+template <int Dim>
+void FitProblem::ChooseLattice(const FitParameters& parameters)
+{
+  const auto place = Placement<Dim>::withFlatAxis(this->FlatAxis);
+  const double* bounds = parameters.ModelBounds.data();
+  bool automatic = true;
+  Box<Dim> box, model;
+  Index<Dim> size;
+  for (int a = 0; a < Dim; ++a)
+  {
+    const auto i = static_cast<std::size_t>(a);
+    const auto axis = static_cast<std::size_t>(place.Axis[i]);
+    box.Lower[a] = this->Cloud.Bounds[2 * axis];
+    box.Upper[a] = this->Cloud.Bounds[2 * axis + 1];
+    model.Lower[a] = bounds[2 * axis];
+    model.Upper[a] = bounds[2 * axis + 1];
+    automatic = automatic && !(bounds[2 * axis] <= bounds[2 * axis + 1]);
+    size[i] = parameters.GridSize[axis];
+    if (size[i] != 0 && size[i] < Order)
+    {
+      this->Refusal = text("GridSize is ", size[i], " along axis ", axis,
+        "; a cubic lattice needs at least 4 coefficients (0: automatic).");
+      return;
+    }
+  }
+
+  const double longest = this->Cloud.longestSide();
+  Points<Dim> positions(Dim, this->Cloud.Positions.size());
+  Box<Dim> local = box;
+  for (std::size_t k = 0; k < this->Cloud.Positions.size(); ++k)
+  {
+    positions.col(static_cast<Eigen::Index>(k)) = place.toLocal(this->Cloud.Positions[k].data());
+  }
+  const double spacingPerPoint = parameters.isClassic() ? ClassicSpacing : HierarchicalSpacing;
+  const double wanted = spacingPerPoint * pointSpacing(positions, local);
+  const double h = std::min(std::max(wanted, longest / MostSpacings), longest / FewestSpacings);
+
+  PlacedLattice<Dim> placed;
+  if (automatic)
+  {
+    const bool anySize = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
+    const double spacings = longest * (1 + 2 * parameters.Padding) / h;
+    if (!anySize && !(spacings < VTK_INT_MAX))
+    {
+      this->Refusal = text("Padding is ", parameters.Padding, ", which would take ", spacings,
+        " knot spacings along an axis. Reduce Padding or give GridSize.");
+      return;
+    }
+    placed = latticeAround<Dim>(box, parameters.Padding, size, h);
+  }
+  else
+  {
+    for (int a = 0; a < Dim; ++a)
+    {
+      if (!(model.Lower[a] < model.Upper[a] && std::isfinite(model.sides()[a])))
+      {
+        this->Refusal = text("ModelBounds are empty or not finite along axis ",
+          place.Axis[static_cast<std::size_t>(a)], ": [", model.Lower[a], ", ", model.Upper[a],
+          "]. Give all axes a positive length, or leave all unset.");
+        return;
+      }
+    }
+    // A box much larger than its points does not get more than MostSpacings of its own.
+    placed = latticeOn<Dim>(model, size, std::max(h, model.sides().maxCoeff() / MostSpacings));
+  }
+
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Origin[axis] = this->Upper[axis] = this->Cloud.Bounds[static_cast<std::size_t>(2 * axis)];
+    this->Spacing[axis] = placed.Grid.Spacing[0];
+    this->GridSize[axis] = 1;
+  }
+  for (int a = 0; a < Dim; ++a)
+  {
+    const int axis = place.Axis[static_cast<std::size_t>(a)];
+    this->Origin[axis] = placed.Lower[a];
+    this->Spacing[axis] = placed.Grid.Spacing[a];
+    this->Upper[axis] = automatic ? placed.Lower[a] + placed.Grid.extent(a) : model.Upper[a];
+    this->GridSize[axis] = static_cast<int>(placed.Grid.Size[static_cast<std::size_t>(a)]);
+  }
+}
+
+void FitProblem::ChooseSamples(const FitParameters& parameters)
+{
+  double total = 1;
+  double dimensions[3];
+  bool anyAutomatic = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const bool automatic = parameters.SampleDimensions[axis] == 0;
+    dimensions[axis] = axis == this->FlatAxis ? 1
+      : automatic                             ? 2. * (this->GridSize[axis] - 3) + 1
+                                              : parameters.SampleDimensions[axis];
+    if (axis != this->FlatAxis && dimensions[axis] < 2)
+    {
+      this->Refusal = text("SampleDimensions is ", parameters.SampleDimensions[axis],
+        " along axis ", axis, "; at least 2 sample points are needed (0: automatic).");
+      return;
+    }
+    anyAutomatic = anyAutomatic || (automatic && axis != this->FlatAxis);
+    total *= dimensions[axis];
+  }
+  const double shrink = anyAutomatic
+    ? std::min(1.0, std::pow(MostAutomaticSamples / total, 1. / this->Dimension))
+    : 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (parameters.SampleDimensions[axis] == 0 && axis != this->FlatAxis)
+    {
+      dimensions[axis] = std::max(2.0, std::floor(dimensions[axis] * shrink));
+    }
+    this->WholeExtent[2 * axis] = 0;
+    this->WholeExtent[2 * axis + 1] = static_cast<int>(dimensions[axis]) - 1;
+    this->SampleSpacing[axis] = axis == this->FlatAxis
+      ? this->Spacing[axis]
+      : (this->Upper[axis] - this->Origin[axis]) / (dimensions[axis] - 1);
+  }
+}
+
+void FitProblem::CheckMemory(const FitParameters& parameters)
+{
+  double coefficients = 1, samples = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    coefficients *= this->GridSize[axis];
+    samples *= this->WholeExtent[2 * axis + 1] + 1.;
+  }
+  const double scalar = parameters.OutputScalarType == VTK_DOUBLE ? 8 : 4;
+  const double arrays =
+    1 + (parameters.GenerateGradient ? 4 : 0) + (parameters.GenerateSupport ? 1 : 0);
+  const double rows = 3. * static_cast<double>(this->Cloud.Positions.size());
+  const double needed =
+    coefficients * BytesPerCoefficient + rows * BytesPerRow + samples * arrays * scalar;
+  const double available = memoryOfMachine();
+  if (needed > MemoryShare * available)
+  {
+    constexpr double gibibyte = 1073741824;
+    this->Refusal = text("The fit would take about ", needed / gibibyte,
+      " GiB of memory (GridSize ", this->GridSize[0], " x ", this->GridSize[1], " x ",
+      this->GridSize[2], ", ", this->WholeExtent[1] + 1, " x ", this->WholeExtent[3] + 1, " x ",
+      this->WholeExtent[5] + 1, " samples); the machine has ", available / gibibyte,
+      " GiB. Reduce GridSize or SampleDimensions.");
+  }
+}
+
+void FitProblem::DropPointsOutside()
+{
+  const auto inside = [this](const std::array<double, 3>& x)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double value = x[static_cast<std::size_t>(axis)];
+      const double slack = 1e-12 * (this->Upper[axis] - this->Origin[axis]);
+      if (axis != this->FlatAxis &&
+        !(value >= this->Origin[axis] - slack && value <= this->Upper[axis] + slack))
+      {
+        return false;
+      }
+    }
+    return true;
+  };
+  PointCloud& cloud = this->Cloud;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < cloud.Positions.size(); ++k)
+  {
+    if (inside(cloud.Positions[k]))
+    {
+      cloud.Positions[kept] = cloud.Positions[k];
+      cloud.Normals[kept] = cloud.Normals[k];
+      cloud.Ids[kept] = cloud.Ids[k];
+      if (!cloud.Weights.empty())
+      {
+        cloud.Weights[kept] = cloud.Weights[k];
+      }
+      ++kept;
+    }
+  }
+  this->OutsideBounds = static_cast<vtkIdType>(cloud.Positions.size() - kept);
+  cloud.Positions.resize(kept);
+  cloud.Normals.resize(kept);
+  cloud.Ids.resize(kept);
+  cloud.Weights.resize(cloud.Weights.empty() ? 0 : kept);
+  std::size_t keptRows = 0;
+  for (std::size_t k = 0; k < cloud.ExtraPositions.size(); ++k)
+  {
+    if (inside(cloud.ExtraPositions[k]))
+    {
+      cloud.ExtraPositions[keptRows] = cloud.ExtraPositions[k];
+      cloud.ExtraValues[keptRows] = cloud.ExtraValues[k];
+      ++keptRows;
+    }
+  }
+  this->OutsideBounds += static_cast<vtkIdType>(cloud.ExtraPositions.size() - keptRows);
+  cloud.ExtraPositions.resize(keptRows);
+  cloud.ExtraValues.resize(keptRows);
+  if (kept == 0)
+  {
+    this->Refusal = text("None of the points lies in the ModelBounds from ", triple(this->Origin),
+      " to ", triple(this->Upper), ".");
+  }
+}
+}

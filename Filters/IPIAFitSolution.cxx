@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "IPIAFitSolution.h"
+
+#include "Core/HierarchicalFit.h"
+#include "IPIAText.h"
+#include "vtkIPIAImplicitFitter.h"
+
+#include <algorithm>
+
+namespace ipia
+{
+namespace
+{
+/// Distance of the automatic offset rows, in knot spacings.
+constexpr double OffsetInSpacings = 1.5;
+/// Iterations of the classic method that fit well without following the noise; conjugate gradients
+/// converge much faster.
+constexpr int AutomaticProgressiveIterations = 100, AutomaticConjugateIterations = 15;
+
+template <int Dim>
+Points<Dim> toLocal(
+  const Placement<Dim>& place, const std::vector<std::array<double, 3>>& positions)
+{
+  Points<Dim> local(Dim, static_cast<Eigen::Index>(positions.size()));
+  for (std::size_t k = 0; k < positions.size(); ++k)
+  {
+    local.col(static_cast<Eigen::Index>(k)) = place.toLocal(positions[k].data());
+  }
+  return local;
+}
+
+Vector toVector(const std::vector<double>& values)
+{
+  return Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// The given distance for all points, or the automatic one, drawn in where other points are near.
+Vector offsetDistances(const PointCloud& cloud, double given, double automatic, double side)
+{
+  return given > 0 ? Vector::Constant(static_cast<Eigen::Index>(cloud.Positions.size()), given)
+                   : toVector(cloud.offsetDistances(automatic, side));
+}
+
+StoppingRule stoppingRule(const FitParameters& parameters)
+{
+  return parameters.StoppingRule == vtkIPIAImplicitFitter::EnergyChange
+    ? StoppingRule::EnergyChange
+    : StoppingRule::RelativeResidual;
+}
+
+template <int Dim>
+Placement<Dim> placementOf(const FitProblem& problem)
+{
+  auto place = Placement<Dim>::withFlatAxis(problem.FlatAxis);
+  std::copy_n(problem.Origin, 3, place.Origin.begin());
+  return place;
+}
+
+template <int Dim>
+Lattice<Dim> latticeOf(const FitProblem& problem, const Placement<Dim>& place)
+{
+  Lattice<Dim> lattice;
+  for (int a = 0; a < Dim; ++a)
+  {
+    const auto i = static_cast<std::size_t>(a);
+    lattice.Size[i] = problem.GridSize[place.Axis[i]];
+    lattice.Spacing[a] = problem.Spacing[place.Axis[i]];
+  }
+  return lattice;
+}
+
+/// The rows of the problem; offset rows only where the parameters ask for them.
+template <int Dim>
+FitInput<Dim> inputOf(const FitProblem& problem, const FitParameters& parameters,
+  const Placement<Dim>& place, double automaticDistance)
+{
+  const PointCloud& cloud = problem.Cloud;
+  FitInput<Dim> input;
+  input.Positions = toLocal(place, cloud.Positions);
+  input.Normals.resize(Dim, input.Positions.cols());
+  for (std::size_t k = 0; k < cloud.Normals.size(); ++k)
+  {
+    for (int a = 0; a < Dim; ++a)
+    {
+      const int axis = place.Axis[static_cast<std::size_t>(a)];
+      input.Normals(a, static_cast<Eigen::Index>(k)) =
+        cloud.Normals[k][static_cast<std::size_t>(axis)];
+    }
+  }
+  input.Weights = toVector(cloud.Weights);
+  input.ExtraPositions = toLocal(place, cloud.ExtraPositions);
+  input.ExtraValues = toVector(cloud.ExtraValues);
+  if (parameters.NormalConstraint == vtkIPIAImplicitFitter::Gradient)
+  {
+    return input;
+  }
+  input.OutwardDistance = offsetDistances(cloud, parameters.OffsetDistance, automaticDistance, 1);
+  input.OutwardValue = parameters.OffsetValue;
+  if (parameters.NormalConstraint == vtkIPIAImplicitFitter::TwoSidedOffset)
+  {
+    const double inward = parameters.InwardOffsetDistance > 0 ? parameters.InwardOffsetDistance
+                                                              : parameters.OffsetDistance;
+    input.InwardDistance = offsetDistances(cloud, inward, automaticDistance, -1);
+    input.InwardValue =
+      parameters.InwardOffsetValue > 0 ? parameters.InwardOffsetValue : parameters.OffsetValue;
+  }
+  return input;
+}
+
+template <int Dim>
+void solveClassic(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
+  const FitParameters& parameters, const ProgressCallback& progress, FitSolution<Dim>& solution)
+{
+  FitOptions options;
+  const bool conjugate = parameters.Solver == vtkIPIAImplicitFitter::ConjugateGradient;
+  options.Solver.Type =
+    conjugate ? SolverType::ConjugateGradient : SolverType::ProgressiveIteration;
+  options.Solver.MaximumNumberOfIterations = parameters.MaximumNumberOfIterations > 0
+    ? parameters.MaximumNumberOfIterations
+    : conjugate ? AutomaticConjugateIterations
+                : AutomaticProgressiveIterations;
+  options.Solver.Tolerance = parameters.Tolerance;
+  options.Solver.Rule = stoppingRule(parameters);
+  options.Solver.StepSize = parameters.StepSize;
+  options.FarField.Magnitude =
+    parameters.OffsetValue > 0 ? parameters.OffsetValue : solution.OffsetDistance;
+
+  solution.Result = fitImplicit<Dim>(lattice, input, options, progress);
+  const SolverResult& solved = solution.Result.Solver;
+  solution.Aborted = solved.Status == SolverStatus::Aborted;
+  if (solved.Status == SolverStatus::Diverged)
+  {
+    solution.Error = text("The iteration diverges with StepSize ", solved.StepSize,
+      ": the energy rose in iteration ", solved.NumberOfIterations,
+      ". Reduce StepSize, or leave it 0 for 2 / max_i sum_k w_k B_i(x_k).");
+  }
+  const int mixed = solution.Result.Function.farField().NumberOfMixedRegions;
+  if (mixed > 0)
+  {
+    solution.Warning = text(mixed,
+      " region(s) without data border on both sides of the surface, which is open there or has "
+      "wide "
+      "holes; f takes the sign of the larger share of the border.");
+  }
+}
+
+/// The offset rows of the classic method and the extra rows as rows of the hierarchy.
+template <int Dim>
+HermiteInput<Dim> hermiteInput(const Lattice<Dim>& lattice, const FitInput<Dim>& input)
+{
+  const std::int64_t n = input.Positions.cols();
+  const std::int64_t most =
+    input.OutwardDistance.size() + input.InwardDistance.size() + input.ExtraPositions.cols();
+  HermiteInput<Dim> rows;
+  rows.Positions = input.Positions;
+  rows.Normals = input.Normals;
+  rows.Weights = input.Weights;
+  rows.ExtraPositions.resize(Dim, most);
+  rows.ExtraValues.resize(most);
+  rows.ExtraWeights.resize(most);
+  std::int64_t used = 0;
+  const auto append = [&](const Point<Dim>& position, double value, double weight)
+  {
+    rows.ExtraPositions.col(used) = position;
+    rows.ExtraValues[used] = value;
+    rows.ExtraWeights[used++] = weight;
+  };
+  const auto appendOffsets = [&](const Vector& distance, double value, double side)
+  {
+    for (std::int64_t k = 0; k < distance.size(); ++k)
+    {
+      const Point<Dim> position =
+        input.Positions.col(k) + side * distance[k] * input.Normals.col(k);
+      if (distance[k] > 0 && lattice.contains(position))
+      {
+        append(position, side * (value > 0 ? value : distance[k]),
+          input.Weights.size() ? input.Weights[k] : 1.0);
+      }
+    }
+  };
+  if (most > input.ExtraPositions.cols())
+  {
+    rows.Normals = Points<Dim>::Zero(Dim, n); // offset rows take the place of gradient rows
+  }
+  appendOffsets(input.OutwardDistance, input.OutwardValue, 1);
+  appendOffsets(input.InwardDistance, input.InwardValue, -1);
+  for (std::int64_t k = 0; k < input.ExtraPositions.cols(); ++k)
+  {
+    append(input.ExtraPositions.col(k), input.ExtraValues[k], 1);
+  }
+  rows.ExtraPositions.conservativeResize(Dim, used);
+  rows.ExtraValues.conservativeResize(used);
+  rows.ExtraWeights.conservativeResize(used);
+  return rows;
+}
+
+template <int Dim>
+void solveHierarchical(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
+  const FitParameters& parameters, const ProgressCallback& progress, FitSolution<Dim>& solution)
+{
+  HierarchicalOptions options;
+  options.NumberOfLevels = parameters.NumberOfLevels;
+  if (parameters.MaximumNumberOfIterations > 0)
+  {
+    options.FinestIterations = parameters.MaximumNumberOfIterations;
+    options.FinestTolerance = parameters.Tolerance;
+  }
+  else if (parameters.Tolerance > 0)
+  {
+    options.FinestTolerance = parameters.Tolerance;
+  }
+  options.Rule = stoppingRule(parameters);
+  if (parameters.FairingWeight >= 0)
+  {
+    const bool membrane = parameters.FairingOrder == 1;
+    options.BandMembrane = membrane ? parameters.FairingWeight : 0;
+    options.BandThinPlate = membrane ? 0 : parameters.FairingWeight;
+    options.SmoothingLength = 0;
+  }
+  HierarchicalResult<Dim> fitted =
+    fitHierarchical(lattice, hermiteInput(lattice, input), options, progress);
+  solution.Aborted = fitted.Aborted;
+  if (fitted.Aborted)
+  {
+    return;
+  }
+  solution.NumberOfLevels = static_cast<int>(fitted.Levels.size());
+  solution.Noise = fitted.Noise;
+  solution.SmoothingLength = fitted.SmoothingLength;
+  const LevelReport& finest = fitted.Reports.back();
+  SolverResult solved;
+  solved.NumberOfIterations = finest.NumberOfIterations;
+  solved.Energy = finest.Energy;
+  solved.ResidualHistory = finest.ResidualHistory;
+  Vector support;
+  if (parameters.GenerateSupport)
+  {
+    support = scaledSupport(lattice, input.Positions, options.Threads);
+  }
+  solution.Result = summarize(ImplicitSpline<Dim>(lattice, assembleCoefficients(fitted.Levels)),
+    solved, std::move(support), input.Positions, options.Threads);
+}
+}
+
+template <int Dim>
+FitSolution<Dim> solve(
+  const FitProblem& problem, const FitParameters& parameters, const ProgressCallback& progress)
+{
+  FitSolution<Dim> solution;
+  solution.Place = placementOf<Dim>(problem);
+  const Lattice<Dim> lattice = latticeOf(problem, solution.Place);
+  const double automatic = OffsetInSpacings * lattice.Spacing.maxCoeff();
+  if (parameters.NormalConstraint != vtkIPIAImplicitFitter::Gradient)
+  {
+    solution.OffsetDistance = parameters.OffsetDistance > 0 ? parameters.OffsetDistance : automatic;
+  }
+  const FitInput<Dim> input = inputOf(problem, parameters, solution.Place, automatic);
+  if (parameters.isClassic())
+  {
+    solveClassic(lattice, input, parameters, progress, solution);
+  }
+  else
+  {
+    solveHierarchical(lattice, input, parameters, progress, solution);
+  }
+  return solution;
+}
+
+template FitSolution<2> solve<2>(const FitProblem&, const FitParameters&, const ProgressCallback&);
+template FitSolution<3> solve<3>(const FitProblem&, const FitParameters&, const ProgressCallback&);
+}
