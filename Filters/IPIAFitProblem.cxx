@@ -15,9 +15,9 @@ namespace ipia
 {
 namespace
 {
-/// The automatic knot spacing in units of the point spacing: one point per occupied cell for the
+/// The automatic knot spacing in units of the point spacing: somewhat less than the spacing for the
 /// hierarchy, about 2.5 where one level must hold together by itself.
-constexpr double HierarchicalSpacing = 1, ClassicSpacing = 1.6;
+constexpr double HierarchicalSpacing = 0.85, ClassicSpacing = 1.6;
 /// Limits of an automatic lattice: knot spacings along the longest side of the points.
 constexpr double FewestSpacings = 8, MostSpacings = 256;
 /// No more samples than this unless the user asks for them.

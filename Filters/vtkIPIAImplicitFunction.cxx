@@ -13,7 +13,7 @@ class vtkIPIAImplicitFunction::Spline
 public:
   virtual ~Spline() = default;
   virtual double Value(const double x[3]) const = 0;
-  virtual void Gradient(const double x[3], double g[3]) const = 0;
+  virtual double ValueAndGradient(const double x[3], double g[3]) const = 0;
 
   /// nullptr with a message if the lattice is not of the right form.
   static std::shared_ptr<const Spline> FromLattice(vtkImageData* lattice, std::string& message);
@@ -32,9 +32,12 @@ public:
     return this->Function->value(this->Place.toLocal(x));
   }
 
-  void Gradient(const double x[3], double g[3]) const override
+  double ValueAndGradient(const double x[3], double g[3]) const override
   {
-    this->Place.toWorldVector(this->Function->gradient(this->Place.toLocal(x)), g);
+    ipia::Point<Dim> gradient;
+    const double f = this->Function->valueAndGradient(this->Place.toLocal(x), gradient);
+    this->Place.toWorldVector(gradient, g);
+    return f;
   }
 
   std::unique_ptr<ipia::ImplicitSpline<Dim>> Function;
@@ -91,11 +94,13 @@ double vtkIPIAImplicitFunction::EvaluateFunction(double x[3])
 
 void vtkIPIAImplicitFunction::EvaluateGradient(double x[3], double g[3])
 {
+  this->EvaluateFunctionAndGradient(x, g);
+}
+
+double vtkIPIAImplicitFunction::EvaluateFunctionAndGradient(const double x[3], double g[3])
+{
   g[0] = g[1] = g[2] = 0;
-  if (this->Fit)
-  {
-    this->Fit->Gradient(x, g);
-  }
+  return this->Fit ? this->Fit->ValueAndGradient(x, g) : 0.0;
 }
 
 void vtkIPIAImplicitFunction::PrintSelf(ostream& os, vtkIndent indent)

@@ -6,6 +6,7 @@
 #include "Parallel.h"
 
 #include <atomic>
+#include <cstring>
 
 namespace ipia
 {
@@ -256,29 +257,54 @@ ImplicitSpline<Dim>::ImplicitSpline(
 
 template <int Dim>
 double ImplicitSpline<Dim>::splineSum(
-  const std::array<AxisLocation, Dim>& at, int derivativeAxis) const
+  const std::array<AxisLocation, Dim>& at, Point<Dim>* gradient) const
 {
   std::array<BasisValues, 3> w = { BasisValues{ 1 }, BasisValues{ 1 }, BasisValues{ 1 } };
+  std::array<BasisValues, 3> d{};
   Index<Dim> cell;
   for (int a = 0; a < Dim; ++a)
   {
-    w[static_cast<std::size_t>(a)] = cubicBasisDerivative(at[a].T, a == derivativeAxis ? 1 : 0);
-    cell[a] = at[a].Cell;
+    const auto i = static_cast<std::size_t>(a);
+    w[i] = cubicBasis(at[i].T);
+    if (gradient)
+    {
+      d[i] = cubicBasisFirstDerivative(at[i].T);
+    }
+    cell[i] = at[i].Cell;
   }
+  // Sums along z and y first, one lane per coefficient along x.
   const auto& size = this->ControlLattice.Size;
   const double* base = this->Coefficients.data() + this->ControlLattice.coefficientIndex(cell);
-  double sum = 0;
+  Vector4 f{}, fy{}, fz{};
   for (std::size_t k = 0; k < (Dim == 3 ? Order : 1); ++k)
   {
     for (std::size_t j = 0; j < Order; ++j)
     {
-      const double* c =
-        base + (static_cast<std::int64_t>(k) * size[1] + static_cast<std::int64_t>(j)) * size[0];
-      sum +=
-        w[2][k] * w[1][j] * (w[0][0] * c[0] + w[0][1] * c[1] + w[0][2] * c[2] + w[0][3] * c[3]);
+      Vector4 c;
+      std::memcpy(&c,
+        base + (static_cast<std::int64_t>(k) * size[1] + static_cast<std::int64_t>(j)) * size[0],
+        sizeof(c));
+      f += w[2][k] * w[1][j] * c;
+      if (gradient)
+      {
+        fy += w[2][k] * d[1][j] * c;
+        fz += d[2][k] * w[1][j] * c;
+      }
     }
   }
-  return derivativeAxis < 0 ? sum : sum / this->ControlLattice.Spacing[derivativeAxis];
+  const auto alongX = [](const BasisValues& x, const Vector4& v)
+  { return x[0] * v[0] + x[1] * v[1] + x[2] * v[2] + x[3] * v[3]; };
+  if (gradient)
+  {
+    const Point<Dim>& h = this->ControlLattice.Spacing;
+    (*gradient)[0] = alongX(d[0], f) / h[0];
+    (*gradient)[1] = alongX(w[0], fy) / h[1];
+    if (Dim == 3)
+    {
+      (*gradient)[Dim - 1] = alongX(w[0], fz) / h[Dim - 1];
+    }
+  }
+  return alongX(w[0], f);
 }
 
 template <int Dim>
@@ -286,26 +312,34 @@ double ImplicitSpline<Dim>::value(const Point<Dim>& position) const
 {
   const Nearest nearest(this->ControlLattice, position);
   const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Cell) != 0;
-  const double f = far ? this->Far.value(nearest.Cell) : this->splineSum(nearest.At, -1);
+  const double f = far ? this->Far.value(nearest.Cell) : this->splineSum(nearest.At, nullptr);
   return f < 0 ? f - nearest.Distance : f + nearest.Distance;
 }
 
 template <int Dim>
 Point<Dim> ImplicitSpline<Dim>::gradient(const Point<Dim>& position) const
 {
+  Point<Dim> g;
+  this->valueAndGradient(position, g);
+  return g;
+}
+
+template <int Dim>
+double ImplicitSpline<Dim>::valueAndGradient(const Point<Dim>& position, Point<Dim>& gradient) const
+{
   const Nearest nearest(this->ControlLattice, position);
   const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Cell) != 0;
-  Point<Dim> g = Point<Dim>::Zero();
-  for (int a = 0; a < Dim && !far; ++a)
-  {
-    g[a] = nearest.Away[a] == 0 ? this->splineSum(nearest.At, a) : 0.0;
-  }
+  gradient.setZero();
+  const double f = far ? this->Far.value(nearest.Cell) : this->splineSum(nearest.At, &gradient);
   if (nearest.Distance > 0)
   {
-    const double f = far ? this->Far.value(nearest.Cell) : this->splineSum(nearest.At, -1);
-    g += (f < 0 ? -1.0 : 1.0) / nearest.Distance * nearest.Away;
+    for (int a = 0; a < Dim; ++a)
+    {
+      gradient[a] = nearest.Away[a] == 0 ? gradient[a] : 0.0;
+    }
+    gradient += (f < 0 ? -1.0 : 1.0) / nearest.Distance * nearest.Away;
   }
-  return g;
+  return f < 0 ? f - nearest.Distance : f + nearest.Distance;
 }
 
 template <int Dim>

@@ -40,6 +40,9 @@ public:
   /// The exact gradient; 0 in the cells of the far field.
   Point<Dim> gradient(const Point<Dim>& position) const;
 
+  /// Both at once; returns f.
+  double valueAndGradient(const Point<Dim>& position, Point<Dim>& gradient) const;
+
   /**
    * f on a grid inside the domain, x fastest.
    *
@@ -57,7 +60,7 @@ public:
 private:
   struct Nearest; // the nearest point of the domain and how far it is
 
-  double splineSum(const std::array<AxisLocation, Dim>& at, int derivativeAxis) const;
+  double splineSum(const std::array<AxisLocation, Dim>& at, Point<Dim>* gradient) const;
 
   Lattice<Dim> ControlLattice;
   Vector Coefficients;

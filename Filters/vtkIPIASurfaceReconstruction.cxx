@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkIPIASurfaceReconstruction.h"
+
+#include "vtkIPIAImplicitFitter.h"
+#include "vtkIPIAImplicitFunction.h"
+
+#include "vtkCleanPolyData.h"
+#include "vtkCommand.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkFlyingEdges2D.h"
+#include "vtkFlyingEdges3D.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMath.h"
+#include "vtkObjectFactory.h"
+#include "vtkOutputWindow.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataConnectivityFilter.h"
+#include "vtkReverseSense.h"
+#include "vtkSMPTools.h"
+#include "vtkStaticPointLocator.h"
+#include "vtkStripper.h"
+#include "vtkVersion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+vtkStandardNewMacro(vtkIPIASurfaceReconstruction);
+
+namespace
+{
+/// Share of the progress that the fit takes.
+constexpr double ProgressOfFit = 0.7;
+/// A Newton step goes no farther than this share of a sample spacing, and is not taken where f is
+/// flat.
+constexpr double LongestStep = 1. / 3, LeastSlope = 0.1;
+/// A component stays if it has this share of the data points that its size makes one expect.
+constexpr double LeastShareOfData = 0.02;
+/// Rounding to float shows beyond this share of the knot spacing.
+constexpr double VisibleRounding = 1e-3;
+constexpr double FloatRounding = 6e-8;
+}
+
+vtkIPIASurfaceReconstruction::vtkIPIASurfaceReconstruction()
+  : ComponentFilter(true)
+  , OutputPointsPrecision(DEFAULT_PRECISION)
+  , NumberOfComponentsLeftOut(0)
+{
+  this->SetNumberOfInputPorts(2);
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
+  this->SetInputArrayToProcess(
+    2, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  for (unsigned long event :
+    { vtkCommand::ErrorEvent, vtkCommand::WarningEvent, vtkCommand::ProgressEvent })
+  {
+    this->Fitter->AddObserver(event, this, &vtkIPIASurfaceReconstruction::ForwardEvent);
+  }
+}
+
+vtkIPIASurfaceReconstruction::~vtkIPIASurfaceReconstruction() = default;
+
+vtkIPIAImplicitFitter* vtkIPIASurfaceReconstruction::GetFitter()
+{
+  return this->Fitter;
+}
+
+void vtkIPIASurfaceReconstruction::SetExtraRowsConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(1, output);
+}
+
+void vtkIPIASurfaceReconstruction::SetExtraRowsData(vtkPolyData* rows)
+{
+  this->SetInputData(1, rows);
+}
+
+vtkMTimeType vtkIPIASurfaceReconstruction::GetMTime()
+{
+  return std::max(this->Superclass::GetMTime(), this->Fitter->GetMTime());
+}
+
+int vtkIPIASurfaceReconstruction::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  if (port == 0)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  }
+  else
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+void vtkIPIASurfaceReconstruction::ForwardEvent(vtkObject*, unsigned long event, void* data)
+{
+  if (event == vtkCommand::ProgressEvent)
+  {
+    this->UpdateProgress(ProgressOfFit * *static_cast<double*>(data));
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+    const bool aborted = this->CheckAbort();
+#else
+    const bool aborted = this->GetAbortExecute() != 0;
+#endif
+    this->Fitter->SetAbortExecute(aborted ? 1 : 0);
+  }
+  else if (this->HasObserver(event))
+  {
+    this->InvokeEvent(event, data);
+  }
+  else if (event == vtkCommand::ErrorEvent)
+  {
+    vtkOutputWindowDisplayErrorText(static_cast<const char*>(data));
+  }
+  else
+  {
+    vtkOutputWindowDisplayWarningText(static_cast<const char*>(data));
+  }
+}
+
+int vtkIPIASurfaceReconstruction::RequestData(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
+{
+  vtkPolyData* surface = vtkPolyData::GetData(output);
+  surface->Initialize();
+  this->NumberOfComponentsLeftOut = 0;
+  for (int port = 0; port < 2; ++port)
+  {
+    // A copy of its own keeps the fitter out of this filter's pipeline.
+    vtkSmartPointer<vtkDataObject> copy;
+    if (vtkDataObject* data = vtkDataObject::GetData(input[port]))
+    {
+      copy.TakeReference(data->NewInstance());
+      copy->ShallowCopy(data);
+    }
+    this->Fitter->SetInputDataObject(port, copy);
+  }
+  for (int index = 0; index < 3; ++index)
+  {
+    this->Fitter->SetInputArrayToProcess(index, this->GetInputArrayInformation(index));
+  }
+  this->Fitter->Update();
+  vtkImageData* sampled = this->Fitter->GetOutput();
+  const bool fitted = sampled->GetNumberOfPoints() > 0;
+  if (fitted)
+  {
+    // Contour filters write float points: contour at the origin, and move in double.
+    double origin[3];
+    const double none[3] = { 0, 0, 0 };
+    sampled->GetOrigin(origin);
+    vtkNew<vtkImageData> image;
+    image->ShallowCopy(sampled);
+    image->SetOrigin(none);
+    vtkNew<vtkFlyingEdges3D> contour3D;
+    vtkNew<vtkFlyingEdges2D> contour2D;
+    vtkNew<vtkReverseSense> outwards;
+    vtkNew<vtkStripper> polylines;
+    if (sampled->GetDataDimension() == 3)
+    {
+      contour3D->SetInputData(image);
+      contour3D->SetValue(0, 0);
+      contour3D->ComputeNormalsOff();
+      contour3D->ComputeScalarsOff();
+      // Its triangles face towards smaller f.
+      outwards->SetInputConnection(contour3D->GetOutputPort());
+      outwards->Update();
+      surface->ShallowCopy(outwards->GetOutput());
+    }
+    else
+    {
+      contour2D->SetInputData(image);
+      contour2D->SetValue(0, 0);
+      contour2D->ComputeScalarsOff();
+      polylines->SetInputConnection(contour2D->GetOutputPort());
+      polylines->JoinContiguousSegmentsOn();
+      polylines->Update();
+      surface->ShallowCopy(polylines->GetOutput());
+    }
+    surface->GetFieldData()->ShallowCopy(sampled->GetFieldData());
+    this->UpdateProgress((1 + ProgressOfFit) / 2);
+    this->MoveOntoZeroSet(surface, origin);
+    if (this->ComponentFilter)
+    {
+      this->LeaveOutComponents(
+        surface, vtkPolyData::SafeDownCast(this->Fitter->GetOutputDataObject(1)));
+    }
+  }
+  // Neither the input nor the samples are needed any more; the function and the figures stay.
+  this->Fitter->GetOutputDataObject(0)->Initialize();
+  this->UpdateProgress(1);
+  return 1;
+}
+
+void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, const double origin[3])
+{
+  vtkPoints* before = surface->GetPoints();
+  const vtkIdType n = before->GetNumberOfPoints();
+  const double* sampleSpacing = this->Fitter->GetOutput()->GetSpacing();
+  const double* knotSpacing =
+    vtkImageData::SafeDownCast(this->Fitter->GetOutputDataObject(2))->GetSpacing();
+  double farthest = 0, h = VTK_DOUBLE_MAX, longest = VTK_DOUBLE_MAX;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* bounds = this->Fitter->GetModelBoundsUsed();
+    farthest = std::max({ farthest, std::abs(bounds[2 * axis]), std::abs(bounds[2 * axis + 1]) });
+    h = std::min(h, knotSpacing[axis]);
+    longest = std::min(longest, LongestStep * sampleSpacing[axis]);
+  }
+  const bool wide = this->OutputPointsPrecision == DOUBLE_PRECISION ||
+    (this->OutputPointsPrecision == DEFAULT_PRECISION &&
+      farthest * FloatRounding > VisibleRounding * h);
+
+  vtkNew<vtkPoints> after;
+  after->SetDataType(wide ? VTK_DOUBLE : VTK_FLOAT);
+  after->SetNumberOfPoints(n);
+  vtkNew<vtkFloatArray> normals;
+  normals->SetName("Normals");
+  normals->SetNumberOfComponents(3);
+  normals->SetNumberOfTuples(n);
+  vtkIPIAImplicitFunction* function = this->Fitter->GetImplicitFunction();
+  vtkSMPTools::For(0, n,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        double x[3], g[3];
+        before->GetPoint(i, x);
+        vtkMath::Add(x, origin, x);
+        const double f = function->EvaluateFunctionAndGradient(x, g);
+        const double slope = vtkMath::Norm(g);
+        if (slope > LeastSlope)
+        {
+          const double step = std::min(std::max(-f / slope, -longest), longest);
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            x[axis] += step * g[axis] / slope;
+          }
+          function->EvaluateFunctionAndGradient(x, g);
+        }
+        vtkMath::Normalize(g);
+        after->SetPoint(i, x);
+        normals->SetTuple(i, g);
+      }
+    });
+  surface->SetPoints(after);
+  surface->GetPointData()->SetNormals(normals);
+}
+
+void vtkIPIASurfaceReconstruction::LeaveOutComponents(vtkPolyData* surface, vtkPolyData* points)
+{
+  vtkNew<vtkPolyDataConnectivityFilter> components;
+  components->SetInputData(surface);
+  components->SetExtractionModeToAllRegions();
+  components->ColorRegionsOn();
+  components->Update();
+  const int n = components->GetNumberOfExtractedRegions();
+  if (n < 2)
+  {
+    return;
+  }
+  auto* regions =
+    vtkIdTypeArray::SafeDownCast(components->GetOutput()->GetPointData()->GetArray("RegionId"));
+  std::vector<double> vertices(static_cast<std::size_t>(n), 0.0), data(vertices);
+  for (vtkIdType i = 0; i < regions->GetNumberOfTuples(); ++i)
+  {
+    ++vertices[static_cast<std::size_t>(regions->GetValue(i))];
+  }
+  vtkNew<vtkStaticPointLocator> locator;
+  locator->SetDataSet(components->GetOutput());
+  locator->BuildLocator();
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    const vtkIdType nearest = locator->FindClosestPoint(points->GetPoint(i));
+    ++data[static_cast<std::size_t>(regions->GetValue(nearest))];
+  }
+  const double perVertex = static_cast<double>(points->GetNumberOfPoints()) /
+    static_cast<double>(regions->GetNumberOfTuples());
+  components->SetExtractionModeToSpecifiedRegions();
+  for (int r = 0; r < n; ++r)
+  {
+    const auto k = static_cast<std::size_t>(r);
+    if (data[k] >= LeastShareOfData * perVertex * vertices[k])
+    {
+      components->AddSpecifiedRegion(r);
+    }
+    else
+    {
+      ++this->NumberOfComponentsLeftOut;
+    }
+  }
+  if (this->NumberOfComponentsLeftOut > 0)
+  {
+    components->ColorRegionsOff();
+    components->Update();
+    // The filter keeps the vertices of what it leaves out.
+    vtkNew<vtkCleanPolyData> unused;
+    unused->SetInputConnection(components->GetOutputPort());
+    unused->PointMergingOff();
+    unused->ConvertPolysToLinesOff();
+    unused->ConvertLinesToPointsOff();
+    unused->Update();
+    vtkNew<vtkFieldData> field;
+    field->ShallowCopy(surface->GetFieldData());
+    surface->ShallowCopy(unused->GetOutput());
+    surface->GetFieldData()->ShallowCopy(field);
+  }
+}
+
+void vtkIPIASurfaceReconstruction::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "ComponentFilter: " << this->ComponentFilter << "\n";
+  os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+  os << indent << "NumberOfComponentsLeftOut: " << this->NumberOfComponentsLeftOut << "\n";
+  os << indent << "Fitter:\n";
+  this->Fitter->PrintSelf(os, indent.GetNextIndent());
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkIPIASurfaceReconstruction
+ * @brief   points with normals in, surface out: fit by I-PIA and contour in one step
+ *
+ * vtkIPIASurfaceReconstruction fits an implicit B-spline function to oriented points with
+ * vtkIPIAImplicitFitter and extracts its zero set: a surface in 3-D, polylines in 2-D (points and
+ * normals in a plane perpendicular to an axis).
+ *
+ * @code
+ *   vtkNew<vtkIPIASurfaceReconstruction> reconstruction;
+ *   reconstruction->SetInputConnection(points->GetOutputPort()); // vtkPolyData with point normals
+ *   reconstruction->Update();
+ * @endcode
+ *
+ * To the chain fitter, vtkFlyingEdges3D it adds:
+ * - a Newton step x <- x - f grad f / |grad f|^2 of every vertex, at most a third of a sample
+ * spacing, which removes most of the error of linear contouring;
+ * - point normals from the exact gradient of f, towards f > 0;
+ * - the component filter: components that hardly any data point is nearest to are left out;
+ * - points in double precision where single would show, such as in map coordinates.
+ *
+ * Input ports and SetInputArrayToProcess are those of vtkIPIAImplicitFitter; its parameters are set
+ * on GetFitter(), whose sample dimensions are those of the contour. Refusals and warnings are the
+ * fitter's, reported by this filter; the output is empty after a refusal or an abort.
+ *
+ * @sa vtkIPIAImplicitFitter vtkIPIAImplicitFunction vtkFlyingEdges3D vtkSurfaceReconstructionFilter
+ */
+#ifndef vtkIPIASurfaceReconstruction_h
+#define vtkIPIASurfaceReconstruction_h
+
+#include "vtkFiltersIPIAModule.h" // for the export macro
+#include "vtkNew.h"               // for vtkNew
+#include "vtkPolyDataAlgorithm.h"
+
+class vtkIPIAImplicitFitter;
+
+class VTKFILTERSIPIA_EXPORT vtkIPIASurfaceReconstruction : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkIPIASurfaceReconstruction* New();
+  vtkTypeMacro(vtkIPIASurfaceReconstruction, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * The fitter that is used: its parameters, and its results after Update(). Its input is set by
+   * this filter.
+   */
+  vtkIPIAImplicitFitter* GetFitter();
+
+  ///@{
+  /**
+   * More rows (port 1, optional): points with target values of f, see vtkIPIAImplicitFitter.
+   */
+  void SetExtraRowsConnection(vtkAlgorithmOutput* output);
+  void SetExtraRowsData(vtkPolyData* rows);
+  ///@}
+
+  ///@{
+  /**
+   * Leave out components that hardly any data point is nearest to: fewer than a fiftieth of what
+   * their share of the vertices would make one expect. Default on.
+   */
+  vtkSetMacro(ComponentFilter, bool);
+  vtkGetMacro(ComponentFilter, bool);
+  vtkBooleanMacro(ComponentFilter, bool);
+  ///@}
+
+  ///@{
+  /**
+   * vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or DEFAULT_PRECISION (the default): double
+   * where rounding to float would exceed a thousandth of the knot spacing.
+   */
+  vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
+  vtkGetMacro(OutputPointsPrecision, int);
+  ///@}
+
+  /**
+   * Number of components that the component filter left out in the last update.
+   */
+  vtkGetMacro(NumberOfComponentsLeftOut, int);
+
+  /// Covers the fitter's parameters.
+  vtkMTimeType GetMTime() override;
+
+protected:
+  vtkIPIASurfaceReconstruction();
+  ~vtkIPIASurfaceReconstruction() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+  bool ComponentFilter;
+  int OutputPointsPrecision;
+  int NumberOfComponentsLeftOut;
+
+private:
+  vtkIPIASurfaceReconstruction(const vtkIPIASurfaceReconstruction&) = delete;
+  void operator=(const vtkIPIASurfaceReconstruction&) = delete;
+
+  void ForwardEvent(vtkObject* caller, unsigned long event, void* data);
+  void LeaveOutComponents(vtkPolyData* surface, vtkPolyData* points);
+  void MoveOntoZeroSet(vtkPolyData* surface, const double origin[3]);
+
+  vtkNew<vtkIPIAImplicitFitter> Fitter;
+};
+
+#endif
