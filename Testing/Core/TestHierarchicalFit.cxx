@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HierarchicalFit.h"
+
+#include "ImplicitSpline.h"
+#include "TestSupport.h"
+
+namespace
+{
+using namespace ipia;
+
+template <int Dim>
+Lattice<Dim> unitLattice(std::int64_t cells)
+{
+  Lattice<Dim> lattice;
+  lattice.Size.fill(cells + 3);
+  lattice.Spacing.setConstant(1.0 / static_cast<double>(cells));
+  return lattice;
+}
+
+template <int Dim>
+HermiteInput<Dim> sphereInput(double radius, std::int64_t n)
+{
+  const auto points = test::spherePoints<Dim>(Point<Dim>::Constant(0.5), radius, n);
+  HermiteInput<Dim> input;
+  input.Positions = points.Positions;
+  input.Normals = points.Normals;
+  return input;
+}
+
+template <int Dim>
+ImplicitSpline<Dim> functionOf(const Lattice<Dim>& lattice, const HierarchicalResult<Dim>& result)
+{
+  return ImplicitSpline<Dim>(lattice, assembleCoefficients(result.Levels));
+}
+
+template <typename T>
+class HierarchicalFit : public ::testing::Test
+{
+};
+TYPED_TEST_SUITE(HierarchicalFit, ipia::test::Dimensions);
+
+TYPED_TEST(HierarchicalFit, FindsTheDistanceToASphere)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = unitLattice<Dim>(64);
+  const auto input = sphereInput<Dim>(0.35, Dim == 2 ? 400 : 12000);
+  const auto result = fitHierarchical(lattice, input, HierarchicalOptions{});
+  const auto f = functionOf(lattice, result);
+  EXPECT_EQ(result.SmoothingLength, 0);
+  EXPECT_EQ(result.Levels.size(), 3u);
+  test::Random random(11);
+  for (int k = 0; k < 500; ++k)
+  {
+    Point<Dim> direction;
+    for (int a = 0; a < Dim; ++a)
+    {
+      direction[a] = random.uniform(-1, 1);
+    }
+    direction.normalize();
+    const auto at = [&](double r) -> Point<Dim>
+    { return Point<Dim>::Constant(0.5) + r * direction; };
+    EXPECT_NEAR(f.value(at(0.35)), 0, 2e-5);
+    EXPECT_NEAR(f.value(at(0.36)), 0.01, 5e-4);
+    EXPECT_NEAR(f.gradient(at(0.35)).dot(direction), 1, 1e-2);
+    // One sign on either side, up to the centre and the border of the domain.
+    for (double r = 0.34; r > 0; r -= 0.02)
+    {
+      EXPECT_LT(f.value(at(r)), 0);
+    }
+    for (double r = 0.36; r < 0.5; r += 0.02)
+    {
+      EXPECT_GT(f.value(at(r)), 0);
+    }
+  }
+}
+
+TYPED_TEST(HierarchicalFit, GivesTheSameBitsOnAnyNumberOfThreads)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = unitLattice<Dim>(48);
+  const auto input = sphereInput<Dim>(0.3, 5000);
+  HierarchicalOptions options;
+  options.Threads = 1;
+  const Vector one = assembleCoefficients(fitHierarchical(lattice, input, options).Levels);
+  for (const int threads : { 1, 2, 4 })
+  {
+    options.Threads = threads;
+    EXPECT_TRUE(
+      test::sameBits(one, assembleCoefficients(fitHierarchical(lattice, input, options).Levels)))
+      << threads << " threads";
+  }
+}
+
+TYPED_TEST(HierarchicalFit, SmoothsNoisyDataOnly)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = unitLattice<Dim>(64);
+  auto input = sphereInput<Dim>(0.35, Dim == 2 ? 1500 : 20000);
+  test::Random random(2);
+  for (Eigen::Index k = 0; k < input.Positions.cols(); ++k)
+  {
+    for (int a = 0; a < Dim; ++a)
+    {
+      // Uniform with a standard deviation of 0.005, a third of a knot spacing.
+      input.Positions(a, k) += random.uniform(-0.00866, 0.00866);
+      input.Normals(a, k) += random.uniform(-0.25, 0.25);
+    }
+    input.Normals.col(k).normalize();
+  }
+  HierarchicalOptions options;
+  const auto smoothed = fitHierarchical(lattice, input, options);
+  options.SmoothingLength = 0;
+  const auto rough = fitHierarchical(lattice, input, options);
+  EXPECT_GT(smoothed.Noise, 0.05);
+  EXPECT_GT(smoothed.SmoothingLength, lattice.Spacing[0]);
+  EXPECT_EQ(rough.SmoothingLength, 0);
+  const auto truth = test::spherePoints<Dim>(Point<Dim>::Constant(0.5), 0.35, 1000);
+  // Root mean squares of f and of the gradient's deviation from the normal, on the true surface.
+  const auto errors = [&](const HierarchicalResult<Dim>& result)
+  {
+    const auto f = functionOf(lattice, result);
+    Eigen::Array2d sum(0, 0);
+    for (Eigen::Index k = 0; k < truth.Positions.cols(); ++k)
+    {
+      Point<Dim> g;
+      const double v = f.valueAndGradient(truth.Positions.col(k), g);
+      sum += Eigen::Array2d(v * v, (g - truth.Normals.col(k)).squaredNorm());
+    }
+    return Eigen::Array2d((sum / static_cast<double>(truth.Positions.cols())).sqrt());
+  };
+  const Eigen::Array2d quiet = errors(smoothed), loud = errors(rough);
+  EXPECT_LT(quiet[0], loud[0]);
+  EXPECT_LT(quiet[1], 0.5 * loud[1]);
+}
+
+TYPED_TEST(HierarchicalFit, FillsAHole)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = unitLattice<Dim>(48);
+  auto input = sphereInput<Dim>(0.35, 8000);
+  const double cut = 0.5 + 0.35 * std::cos(0.5); // a cap of half an opening angle of 0.5
+  Eigen::Index kept = 0;
+  for (Eigen::Index k = 0; k < input.Positions.cols(); ++k)
+  {
+    if (input.Positions(0, k) < cut)
+    {
+      input.Positions.col(kept) = input.Positions.col(k);
+      input.Normals.col(kept++) = input.Normals.col(k);
+    }
+  }
+  input.Positions.conservativeResize(Dim, kept);
+  input.Normals.conservativeResize(Dim, kept);
+  const auto f = functionOf(lattice, fitHierarchical(lattice, input, HierarchicalOptions{}));
+  Point<Dim> x = Point<Dim>::Constant(0.5);
+  int changes = 0;
+  double before = f.value(x), crossing = 0;
+  for (; x[0] < 1; x[0] += 0.001)
+  {
+    const double value = f.value(x);
+    if (value * before < 0)
+    {
+      ++changes;
+      crossing = x[0];
+    }
+    before = value;
+  }
+  EXPECT_EQ(changes, 1);
+  EXPECT_NEAR(crossing, 0.85, 0.03);
+}
+
+TYPED_TEST(HierarchicalFit, MeetsExtraRows)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = unitLattice<Dim>(32);
+  auto input = sphereInput<Dim>(0.35, 3000);
+  input.ExtraPositions = Point<Dim>::Constant(0.5);
+  input.ExtraValues = Vector::Constant(1, -0.5);
+  input.ExtraWeights = Vector::Constant(1, 100);
+  const auto f = functionOf(lattice, fitHierarchical(lattice, input, HierarchicalOptions{}));
+  EXPECT_NEAR(f.value(Point<Dim>::Constant(0.5)), -0.5, 0.05);
+}
+
+TYPED_TEST(HierarchicalFit, StopsAsAsked)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = unitLattice<Dim>(64);
+  const auto input = sphereInput<Dim>(0.35, 3000);
+  int calls = 0;
+  const auto aborted = fitHierarchical<Dim>(
+    lattice, input, HierarchicalOptions{}, [&](double) { return ++calls < 2; });
+  EXPECT_TRUE(aborted.Aborted);
+  HierarchicalOptions options;
+  options.FinestIterations = 3;
+  options.FinestTolerance = 0;
+  const auto three = fitHierarchical(lattice, input, options);
+  EXPECT_EQ(three.Reports.back().NumberOfIterations, 3);
+  EXPECT_EQ(three.Reports.back().ResidualHistory.size(), 4u);
+  EXPECT_EQ(three.Reports.back().ResidualHistory.front(), 1);
+  EXPECT_GT(three.Reports.back().Energy, 0);
+  options.NumberOfLevels = 1;
+  EXPECT_EQ(fitHierarchical(lattice, input, options).Levels.size(), 1u);
+}
+}
