@@ -35,7 +35,7 @@ struct FarField
 
 struct FarFieldOptions
 {
-  double Threshold = 0.01; ///< a cell is unsupported where s < Threshold
+  double Threshold = 0.05; ///< a cell is unsupported where s < Threshold
   double Magnitude = 1;    ///< |f| there
   int Threads = 0;
 };
