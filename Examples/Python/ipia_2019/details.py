@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 from .drawing import BLUE, RED, WHITE, Sheet, View, points_actor, surface_actor
 from .fitting import fit
-from .models import MODELS
 from .robustness import facing
 
 TILE_SIZE = (420, 420)
@@ -34,22 +33,24 @@ ENLARGED = (
 
 
 def figure_6(lab):
-    full = lab.library.cloud("Armadillo")
+    title, full = lab.library.title("Armadillo"), lab.library.cloud("Armadillo")
     sparse = full.random_subset(int(SPARSE_SHARE * len(full)), lab.library.random("sparse"))
     fine_settings = lab.library.settings("Armadillo")
     coarse_grid = lab.library.grid(COARSE_GRID)
-    coarse = lab.record(f"armadillo, coarse grid {coarse_grid}",
+    coarse = lab.record(f"{title}, coarse grid {coarse_grid}",
                         fit(full, fine_settings.but(grid=coarse_grid)))
-    fine = lab.record(f"armadillo, 30 % of the points, fine grid {fine_settings.grid}",
+    fine = lab.record(f"{title}, 30 % of the points, fine grid {fine_settings.grid}",
                       fit(sparse, fine_settings))
     sheet = Sheet(1, 4, TILE_SIZE)
     for column, (letter, cloud) in enumerate((("a", full), ("b", sparse))):
         sheet.tile(0, column, f"({letter}) {len(cloud)} points",
-                   [points_actor(facing(cloud, ARMADILLO_VIEW), BLUE, size=1)], ARMADILLO_VIEW)
+                   [points_actor(facing(cloud, ARMADILLO_VIEW), BLUE)], ARMADILLO_VIEW)
     sheet.tile(0, 2, f"(c) from (a), grid {coarse_grid}\u00b3", [surface_actor(coarse.contour)],
                ARMADILLO_VIEW)
     sheet.tile(0, 3, f"(d) from (b), grid {fine_settings.grid}\u00b3",
                [surface_actor(fine.contour)], ARMADILLO_VIEW)
+    lab.note("(d) shows more of the plates and scales than (c), and its rims are rough: the points of "
+             "(b) lie two knot spacings apart")
     return sheet
 
 
@@ -70,7 +71,7 @@ def figure_7(lab):
 def figure_8(lab):
     sheet = Sheet(len(ENLARGED), 3, TILE_SIZE)
     for row, model in enumerate(ENLARGED):
-        title = MODELS[model.name].title
+        title = lab.library.title(model.name)
         made = lab.record(title, lab.standard_fit(model.name))
         sheet.tile(row, 0, title, [surface_actor(made.contour)], model.view)
         for column, (part, centre, half_height) in enumerate(model.parts, start=1):

@@ -51,12 +51,13 @@ MODELS = {model.name: model for model in (
     Model("Elephant", "elephant", 52100, 50, 9.6839e-4, 44.55, mesh="refined_elephant"),
     Model("Bunny", "bunny", 35947, 70, 9.5983e-2, 88.24, mesh="bunny00"),
     Model("Fertility", "camel, for fertility", 241607, 70, 9.5989e-5, 902.35, mesh="camel",
-          remark="the gap between the camel's lips is a fifth of a knot spacing wide: part of it "
-                 "stays as a bubble inside the head"),
+          remark="the gap between the camel's lips is a fifth of a knot spacing wide; of two "
+                 "components one is what is left of it, a bubble inside the head"),
     Model("Armadillo", "armadillo", 51892, 190, 1.9831e-2, 2732.32, mesh="armadillo"),
     Model("Buddha", "temple lion, for Buddha", 80000, 150, 7.4594e-2, 1835.73,
           mesh="ChineseDragon-10kv"),
-    Model("BU", "mannequin, for BU", 70000, 160, 1.1899e-3, 2028.01, mesh="mannequin-devil"),
+    Model("BU", "mannequin, for BU", 70000, 160, 1.1899e-3, 2028.01, mesh="mannequin-devil",
+          remark="the mesh is open at the neck; the cut there is the edge of the far field"),
 )}
 
 # Half the longest side of a normalised model: the domain of a surface that ends at its box.
@@ -75,6 +76,20 @@ class ModelLibrary:
         if name not in self._clouds:
             self._clouds[name] = self._make(MODELS[name])
         return self._clouds[name]
+
+    def title(self, name):
+        """What the points are, for pictures and table."""
+        model = MODELS[name]
+        return f"double torus for {name}" if self._quick and model.mesh else model.title
+
+    def source(self, name):
+        """The title with the mesh that was read, if any."""
+        mesh = "" if self._quick else MODELS[name].mesh
+        return f"{self.title(name)} ({mesh}.off)" if mesh else self.title(name)
+
+    def remark(self, name):
+        """What is to be known about the mesh that was read, or an empty string."""
+        return "" if self._quick else MODELS[name].remark
 
     def settings(self, name):
         model = MODELS[name]
@@ -99,5 +114,5 @@ class ModelLibrary:
         if model.name == "Gyroid":
             return surfaces.gyroid(count, random)
         if self._quick:
-            return surfaces.double_torus(count // 2)
+            return self.cloud("Double-torus")
         return meshes.mesh_cloud(self._find_meshes() / f"{model.mesh}.off", count, random)

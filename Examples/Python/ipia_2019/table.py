@@ -22,16 +22,12 @@ def _row(lab, model):
     made = lab.standard_fit(model.name)
     settings = lab.library.settings(model.name)
     _note_far_field_points(lab, model, made)
-    if model.remark and made.components > 1:
-        lab.note(f"{model.name}: {model.remark}")
-    return (model.name, _source(model), str(len(lab.library.cloud(model.name))),
+    if lab.library.remark(model.name):
+        lab.note(f"{model.name}: {lab.library.remark(model.name)}")
+    return (model.name, lab.library.source(model.name), str(len(lab.library.cloud(model.name))),
             f"{settings.grid}^{2 if model.planar else 3}", str(ITERATIONS), str(made.components),
             f"{model.paper_error:.3g}", f"{made.max_error:.3g}",
             f"{model.paper_seconds:g}", f"{made.seconds:.2f}")
-
-
-def _source(model):
-    return f"{model.title} ({model.mesh}.off)" if model.mesh else model.title
 
 
 def _note_far_field_points(lab, model, made):
