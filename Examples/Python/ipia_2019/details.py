@@ -49,8 +49,8 @@ def figure_6(lab):
                ARMADILLO_VIEW)
     sheet.tile(0, 3, f"(d) from (b), grid {fine_settings.grid}\u00b3",
                [surface_actor(fine.contour)], ARMADILLO_VIEW)
-    lab.note("(d) shows more of the plates and scales than (c), and its rims are rough: the points of "
-             "(b) lie two knot spacings apart")
+    lab.note_on_meshes("(d) shows more of the plates and scales than (c), and its rims are rough: "
+                       "the points of (b) lie two knot spacings apart")
     return sheet
 
 

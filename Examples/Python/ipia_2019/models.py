@@ -69,7 +69,7 @@ class ModelLibrary:
 
     def __init__(self, find_meshes, quick=False):
         self._find_meshes = find_meshes
-        self._quick = quick
+        self.quick = quick
         self._clouds = {}
 
     def cloud(self, name):
@@ -80,26 +80,22 @@ class ModelLibrary:
     def title(self, name):
         """What the points are, for pictures and table."""
         model = MODELS[name]
-        return f"double torus for {name}" if self._quick and model.mesh else model.title
+        return f"double torus for {name}" if self.quick and model.mesh else model.title
 
     def source(self, name):
         """The title with the mesh that was read, if any."""
-        mesh = "" if self._quick else MODELS[name].mesh
+        mesh = "" if self.quick else MODELS[name].mesh
         return f"{self.title(name)} ({mesh}.off)" if mesh else self.title(name)
-
-    def remark(self, name):
-        """What is to be known about the mesh that was read, or an empty string."""
-        return "" if self._quick else MODELS[name].remark
 
     def settings(self, name):
         model = MODELS[name]
-        grid = min(model.grid, QUICK_GRID) if self._quick else model.grid
+        grid = min(model.grid, QUICK_GRID) if self.quick else model.grid
         settings = Settings(grid=grid, planar=model.planar)
         return settings.but(half_side=MODEL_HALF_SIDE) if model.open_at_domain else settings
 
     def grid(self, size):
         """A grid size that a figure asks for, as --quick allows it."""
-        return min(size, QUICK_GRID) if self._quick else size
+        return min(size, QUICK_GRID) if self.quick else size
 
     @staticmethod
     def random(purpose):
@@ -110,9 +106,9 @@ class ModelLibrary:
         if model.name in ANALYTIC:
             return ANALYTIC[model.name](model.count)
         random = self.random(model.name)
-        count = min(model.count, QUICK_POINTS) if self._quick else model.count
+        count = min(model.count, QUICK_POINTS) if self.quick else model.count
         if model.name == "Gyroid":
             return surfaces.gyroid(count, random)
-        if self._quick:
+        if self.quick:
             return self.cloud("Double-torus")
         return meshes.mesh_cloud(self._find_meshes() / f"{model.mesh}.off", count, random)

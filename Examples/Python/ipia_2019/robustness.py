@@ -8,6 +8,7 @@ import vtk
 
 from .drawing import BLUE, RED, Sheet, View, points_actor, surface_actor
 from .fitting import fit
+from .models import MODELS
 
 TILE_SIZE = (420, 420)
 
@@ -51,6 +52,8 @@ def figure_4(lab):
         title = lab.library.title(holes.name)
         left, made = _fit_with_holes(lab, holes, HOLE_RADIUS)
         lab.record(f"{title}, with holes", made)
+        if MODELS[holes.name].remark:
+            lab.note_on_meshes(f"{title}: {MODELS[holes.name].remark}")
         sheet.tile(0, column, f"({'abc'[column]}) {title}", [surface_actor(made.contour)],
                    holes.view)
         sheet.tile(1, column, f"({'def'[column]}) with the {len(left)} points",
@@ -81,7 +84,7 @@ def figure_5(lab):
         ("90 % of the right part removed", *_cloud_and_fit(_thinned(cloud, lab), settings)),
         (f"noise, {NOISE:g} of the longest side", *_cloud_and_fit(
             cloud.with_noise(NOISE, lab.library.random("noise")), settings)))
-    lab.note(THINNING_NOTE)
+    lab.note_on_meshes(THINNING_NOTE)
     sheet = Sheet(2, len(variants), TILE_SIZE)
     for column, (title, points, made) in enumerate(variants):
         lab.record(title, made)
