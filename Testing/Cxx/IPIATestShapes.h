@@ -9,14 +9,18 @@
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkFlyingEdges3D.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
+#include "vtkMassProperties.h"
 #include "vtkMath.h"
 #include "vtkMinimalStandardRandomSequence.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStaticPointLocator.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -175,30 +179,58 @@ inline vtkSmartPointer<vtkPolyData> Triangulate(const ImplicitShape& shape)
   return contour->GetOutput();
 }
 
+/// Points of a data set of which none are nearer to each other than a radius; every point left out
+/// is nearer to one of them.
+inline std::vector<vtkIdType> ThinnedPoints(vtkPolyData* data, double radius)
+{
+  vtkNew<vtkStaticPointLocator> locator;
+  locator->SetDataSet(data);
+  locator->BuildLocator();
+  // In random order, as discs thrown at the surface.
+  std::vector<std::pair<double, vtkIdType>> order;
+  vtkNew<vtkMinimalStandardRandomSequence> random;
+  random->SetSeed(1);
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    random->Next();
+    order.emplace_back(random->GetValue(), i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<char> covered(order.size(), 0);
+  std::vector<vtkIdType> chosen;
+  vtkNew<vtkIdList> near;
+  for (const auto& next : order)
+  {
+    if (!covered[static_cast<std::size_t>(next.second)])
+    {
+      chosen.push_back(next.second);
+      locator->FindPointsWithinRadius(radius, data->GetPoint(next.second), near);
+      for (vtkIdType k = 0; k < near->GetNumberOfIds(); ++k)
+      {
+        covered[static_cast<std::size_t>(near->GetId(k))] = 1;
+      }
+    }
+  }
+  return chosen;
+}
+
 /**
- * n random points of a shape: vertices of a fine triangulation, brought onto it by Newton's method,
- * with the exact normals times @a side. As with a scan, their distances vary.
+ * About n points that cover a shape: vertices of a fine triangulation, thinned, and brought onto the
+ * shape by Newton's method, with the exact normals times @a side.
  */
 inline OrientedPoints PointsOn(const ImplicitShape& shape, vtkIdType n, double side = 1)
 {
   auto surface = Triangulate(shape);
-  const vtkIdType available = surface->GetNumberOfPoints();
-  std::vector<vtkIdType> order(static_cast<std::size_t>(available));
-  for (vtkIdType i = 0; i < available; ++i)
-  {
-    order[static_cast<std::size_t>(i)] = i;
-  }
-  vtkNew<vtkMinimalStandardRandomSequence> random;
-  random->SetSeed(1);
+  vtkNew<vtkMassProperties> area;
+  area->SetInputData(surface);
+  area->Update();
+  // Discs thrown until none fits are about 0.7 / radius^2 to a unit of area.
+  const double radius = std::sqrt(0.7 * area->GetSurfaceArea() / static_cast<double>(n));
   OrientedPoints cloud;
-  for (vtkIdType i = 0; i < std::min(n, available); ++i)
+  for (vtkIdType id : ThinnedPoints(surface, radius))
   {
-    random->Next();
-    const auto other =
-      i + static_cast<vtkIdType>(random->GetValue() * static_cast<double>(available - i));
-    std::swap(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(other)]);
     Vector3 x;
-    surface->GetPoint(order[static_cast<std::size_t>(i)], x.data());
+    surface->GetPoint(id, x.data());
     for (int step = 0; step < 5; ++step)
     {
       const Vector3 g = shape.Gradient(x);

@@ -12,6 +12,7 @@
 #include "vtkIPIAImplicitFunction.h"
 #include "vtkImageBSplineInterpolator.h"
 #include "vtkMath.h"
+#include "vtkMinimalStandardRandomSequence.h"
 #include "vtkSampleFunction.h"
 #include "vtkSphereSource.h"
 #include "vtkTestUtilities.h"
