@@ -45,8 +45,7 @@ struct OrientedPoints
 
   void Append(const OrientedPoints& other)
   {
-    this->Positions.insert(
-      this->Positions.end(), other.Positions.begin(), other.Positions.end());
+    this->Positions.insert(this->Positions.end(), other.Positions.begin(), other.Positions.end());
     this->Normals.insert(this->Normals.end(), other.Normals.begin(), other.Normals.end());
   }
 };
@@ -124,8 +123,7 @@ inline ImplicitShape Sphere(double radius, const Vector3& c)
 inline ImplicitShape Torus(double ring, double tube)
 {
   const double r = 1.05 * (ring + tube);
-  return { [=](const Vector3& x)
-    { return std::hypot(std::hypot(x[0], x[1]) - ring, x[2]) - tube; },
+  return { [=](const Vector3& x) { return std::hypot(std::hypot(x[0], x[1]) - ring, x[2]) - tube; },
     [=](const Vector3& x)
     {
       const double rho = std::hypot(x[0], x[1]);
@@ -215,8 +213,8 @@ inline std::vector<vtkIdType> ThinnedPoints(vtkPolyData* data, double radius)
 }
 
 /**
- * About n points that cover a shape: vertices of a fine triangulation, thinned, and brought onto the
- * shape by Newton's method, with the exact normals times @a side.
+ * About n points that cover a shape: vertices of a fine triangulation, thinned, and brought onto
+ * the shape by Newton's method, with the exact normals times @a side.
  */
 inline OrientedPoints PointsOn(const ImplicitShape& shape, vtkIdType n, double side = 1)
 {
@@ -319,8 +317,8 @@ inline OrientedPoints PointsOn(
     {
       const double t = i * dt, r = curve.Radius(t), s = curve.Slope(t), v = speed(t);
       const double c = std::cos(t), d = std::sin(t);
-      cloud.Add({ centreX + r * c, centreY + r * d, 0 },
-        { (r * c + s * d) / v, (r * d - s * c) / v, 0 });
+      cloud.Add(
+        { centreX + r * c, centreY + r * d, 0 }, { (r * c + s * d) / v, (r * d - s * c) / v, 0 });
     }
     length += speed((i + 0.5) * dt) * dt;
   }

@@ -52,8 +52,8 @@ void TestSurface(ipiatest::Checks& checks, const ipiatest::KnownSurface& surface
     name + ": components with the far field");
   const int bare = CountComponents(WithoutFarField(lattice), fitter->GetOutput());
   checks.That(bare > surface.Components,
-    Text(name, ": more than ", surface.Components, " components without the far field (", bare,
-      ")"));
+    Text(
+      name, ": more than ", surface.Components, " components without the far field (", bare, ")"));
 }
 }
 

@@ -43,13 +43,13 @@ void TestPrintSelf(Checks& checks)
   fitter->Update();
   std::ostringstream os;
   fitter->Print(os);
-  for (const char* name : { "ModelBounds:", "Padding:", "GridSize:", "SampleDimensions:",
-         "Dimension:", "NormalConstraint:", "OffsetDistance:", "OffsetValue:",
-         "InwardOffsetDistance:", "InwardOffsetValue:", "Solver:", "NumberOfLevels:",
-         "MaximumNumberOfIterations:", "Tolerance:", "StoppingRule:", "StepSize:",
-         "GenerateGradient:", "GenerateSupport:", "OutputScalarType:", "NumberOfIterationsUsed:",
-         "StepSizeUsed:", "Energy:", "AverageError:", "MaximumError:", "Oscillation:",
-         "OffsetDistanceUsed:", "GridSizeUsed: (12, 12, 12)" })
+  for (const char* name :
+    { "ModelBounds:", "Padding:", "GridSize:", "SampleDimensions:", "Dimension:",
+      "NormalConstraint:", "OffsetDistance:", "OffsetValue:", "InwardOffsetDistance:",
+      "InwardOffsetValue:", "Solver:", "NumberOfLevels:", "MaximumNumberOfIterations:",
+      "Tolerance:", "StoppingRule:", "StepSize:", "GenerateGradient:", "GenerateSupport:",
+      "OutputScalarType:", "NumberOfIterationsUsed:", "StepSizeUsed:", "Energy:", "AverageError:",
+      "MaximumError:", "Oscillation:", "OffsetDistanceUsed:", "GridSizeUsed: (12, 12, 12)" })
   {
     checks.That(os.str().find(name) != std::string::npos, Text("PrintSelf has ", name));
   }
@@ -165,7 +165,8 @@ void TestTolerance(Checks& checks)
     if (rule == vtkIPIAImplicitFitter::RelativeResidual)
     {
       vtkDataArray* history = fitter->GetOutput()->GetFieldData()->GetArray("ResidualHistory");
-      checks.That(history->GetComponent(used, 0) < 0.05 && history->GetComponent(used - 1, 0) >= 0.05,
+      checks.That(
+        history->GetComponent(used, 0) < 0.05 && history->GetComponent(used - 1, 0) >= 0.05,
         what + ": at the first residual below the tolerance");
     }
   }
@@ -210,8 +211,7 @@ void TestWeights(Checks& checks)
     auto fitter = NewClassicFitter(cloud, 12);
     fitter->SetSolverToConjugateGradient();
     fitter->SetOffsetDistance(0.3);
-    fitter->SetInputArrayToProcess(
-      1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Importance");
+    fitter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Importance");
     fitter->Update();
     double x[3] = { 0, 0, 1 };
     value[k++] = fitter->GetImplicitFunction()->EvaluateFunction(x);
@@ -231,8 +231,7 @@ void TestScaledWeights(Checks& checks)
   weights->Fill(8);
   cloud->GetPointData()->AddArray(weights);
   auto weighted = NewClassicFitter(cloud, 12);
-  weighted->SetInputArrayToProcess(
-    1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Importance");
+  weighted->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Importance");
   weighted->Update();
   auto plain = NewClassicFitter(SphereCloud(), 12);
   plain->Update();
@@ -261,8 +260,7 @@ void TestExtraRows(Checks& checks)
     fitter->SetExtraRowsData(rows);
     if (byName)
     {
-      fitter->SetInputArrayToProcess(
-        2, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Target");
+      fitter->SetInputArrayToProcess(2, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Target");
     }
     fitter->Update();
     checks.AtMost(std::abs(fitter->GetImplicitFunction()->EvaluateFunction(centre) + 0.7), 0.05,

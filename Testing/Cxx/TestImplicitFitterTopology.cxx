@@ -31,8 +31,7 @@ void TestSurface(ipiatest::Checks& checks, const ipiatest::KnownSurface& surface
           const ipiatest::Topology expected{ surface.Components, surface.Genus, 0, 0 };
           checks.Equal(ipiatest::TopologyOf(ipiatest::ZeroSurface(fitter)), expected,
             Text(surface.Name, ", ", surface.Cloud.Positions.size(), " points, ", size,
-              "^3, constraint ", constraint, ", solver ", solver, ", ", iterations,
-              " iterations"));
+              "^3, constraint ", constraint, ", solver ", solver, ", ", iterations, " iterations"));
         }
       }
     }
