@@ -1059,9 +1059,9 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   const auto triple = [](const auto* v) { return text("(", v[0], ", ", v[1], ", ", v[2], ")"); };
-  const double* b = this->ModelBounds;
-  os << indent << "ModelBounds: (" << b[0] << ", " << b[1] << ", " << b[2] << ", " << b[3] << ", "
-     << b[4] << ", " << b[5] << ")\n";
+  const auto bounds = [](const double* b)
+  { return text("(", b[0], ", ", b[1], ", ", b[2], ", ", b[3], ", ", b[4], ", ", b[5], ")"); };
+  os << indent << "ModelBounds: " << bounds(this->ModelBounds) << "\n";
   os << indent << "Padding: " << this->Padding << "\n";
   os << indent << "GridSize: " << triple(this->GridSize) << "\n";
   os << indent << "SampleDimensions: " << triple(this->SampleDimensions) << "\n";
@@ -1088,4 +1088,5 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Oscillation: " << this->Oscillation << "\n";
   os << indent << "OffsetDistanceUsed: " << this->OffsetDistanceUsed << "\n";
   os << indent << "GridSizeUsed: " << triple(this->GridSizeUsed) << "\n";
+  os << indent << "ModelBoundsUsed: " << bounds(this->ModelBoundsUsed) << "\n";
 }
