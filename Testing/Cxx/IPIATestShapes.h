@@ -177,14 +177,16 @@ inline vtkSmartPointer<vtkPolyData> Triangulate(const ImplicitShape& shape)
   return contour->GetOutput();
 }
 
-/// Points of a data set of which none are nearer to each other than a radius; every point left out
-/// is nearer to one of them.
-inline std::vector<vtkIdType> ThinnedPoints(vtkPolyData* data, double radius)
+/// How points are chosen among the vertices of a triangulation.
+enum class Choice
 {
-  vtkNew<vtkStaticPointLocator> locator;
-  locator->SetDataSet(data);
-  locator->BuildLocator();
-  // In random order, as discs thrown at the surface.
+  Even,  ///< as discs that are thrown at the surface until none fits
+  Random ///< any of them, so that gaps and clusters occur
+};
+
+/// All points of a data set in random order.
+inline std::vector<vtkIdType> ShuffledPoints(vtkPolyData* data)
+{
   std::vector<std::pair<double, vtkIdType>> order;
   vtkNew<vtkMinimalStandardRandomSequence> random;
   random->SetSeed(1);
@@ -194,15 +196,30 @@ inline std::vector<vtkIdType> ThinnedPoints(vtkPolyData* data, double radius)
     order.emplace_back(random->GetValue(), i);
   }
   std::sort(order.begin(), order.end());
-  std::vector<char> covered(order.size(), 0);
+  std::vector<vtkIdType> ids;
+  for (const auto& entry : order)
+  {
+    ids.push_back(entry.second);
+  }
+  return ids;
+}
+
+/// Points of a data set of which none are nearer to each other than a radius; every point left out
+/// is nearer to one of them.
+inline std::vector<vtkIdType> ThinnedPoints(vtkPolyData* data, double radius)
+{
+  vtkNew<vtkStaticPointLocator> locator;
+  locator->SetDataSet(data);
+  locator->BuildLocator();
+  std::vector<char> covered(static_cast<std::size_t>(data->GetNumberOfPoints()), 0);
   std::vector<vtkIdType> chosen;
   vtkNew<vtkIdList> near;
-  for (const auto& next : order)
+  for (vtkIdType next : ShuffledPoints(data))
   {
-    if (!covered[static_cast<std::size_t>(next.second)])
+    if (!covered[static_cast<std::size_t>(next)])
     {
-      chosen.push_back(next.second);
-      locator->FindPointsWithinRadius(radius, data->GetPoint(next.second), near);
+      chosen.push_back(next);
+      locator->FindPointsWithinRadius(radius, data->GetPoint(next), near);
       for (vtkIdType k = 0; k < near->GetNumberOfIds(); ++k)
       {
         covered[static_cast<std::size_t>(near->GetId(k))] = 1;
@@ -212,20 +229,31 @@ inline std::vector<vtkIdType> ThinnedPoints(vtkPolyData* data, double radius)
   return chosen;
 }
 
-/**
- * About n points that cover a shape: vertices of a fine triangulation, thinned, and brought onto
- * the shape by Newton's method, with the exact normals times @a side.
- */
-inline OrientedPoints PointsOn(const ImplicitShape& shape, vtkIdType n, double side = 1)
+inline std::vector<vtkIdType> ChoosePoints(vtkPolyData* surface, vtkIdType n, Choice choice)
 {
-  auto surface = Triangulate(shape);
+  if (choice == Choice::Random)
+  {
+    auto ids = ShuffledPoints(surface);
+    ids.resize(std::min(ids.size(), static_cast<std::size_t>(n)));
+    return ids;
+  }
   vtkNew<vtkMassProperties> area;
   area->SetInputData(surface);
   area->Update();
   // Discs thrown until none fits are about 0.7 / radius^2 to a unit of area.
-  const double radius = std::sqrt(0.7 * area->GetSurfaceArea() / static_cast<double>(n));
+  return ThinnedPoints(surface, std::sqrt(0.7 * area->GetSurfaceArea() / static_cast<double>(n)));
+}
+
+/**
+ * About n points of a shape: vertices of a fine triangulation, brought onto the shape by Newton's
+ * method, with the exact normals times @a side.
+ */
+inline OrientedPoints PointsOn(
+  const ImplicitShape& shape, vtkIdType n, double side = 1, Choice choice = Choice::Even)
+{
+  auto surface = Triangulate(shape);
   OrientedPoints cloud;
-  for (vtkIdType id : ThinnedPoints(surface, radius))
+  for (vtkIdType id : ChoosePoints(surface, n, choice))
   {
     Vector3 x;
     surface->GetPoint(id, x.data());
@@ -250,17 +278,18 @@ struct KnownSurface
   int Components, Genus;
 };
 
-/// The shapes of the topology tests, n points each.
-inline std::vector<KnownSurface> KnownSurfaces(vtkIdType n)
+/// The shapes of the topology tests, about n points each.
+inline std::vector<KnownSurface> KnownSurfaces(vtkIdType n, Choice choice = Choice::Even)
 {
-  OrientedPoints apart = PointsOn(Sphere(1, { 0, 0, 0 }), n / 2);
-  apart.Append(PointsOn(Sphere(1, { 3, 0, 0 }), n / 2)); // the gap is one radius
-  OrientedPoints nested = PointsOn(Sphere(1, { 0, 0, 0 }), n * 4 / 5);
-  nested.Append(PointsOn(Sphere(0.5, { 0, 0, 0 }), n / 5, -1)); // a hollow ball
+  const ImplicitShape ball = Sphere(1, { 0, 0, 0 });
+  OrientedPoints apart = PointsOn(ball, n / 2, 1, choice);
+  apart.Append(PointsOn(Sphere(1, { 3, 0, 0 }), n / 2, 1, choice)); // the gap is one radius
+  OrientedPoints nested = PointsOn(ball, n * 4 / 5, 1, choice);
+  nested.Append(PointsOn(Sphere(0.5, { 0, 0, 0 }), n / 5, -1, choice)); // a hollow ball
   return {
-    { "sphere", PointsOn(Sphere(1, { 0, 0, 0 }), n), 1, 0 },
-    { "torus", PointsOn(Torus(1, 0.4), n), 1, 1 },
-    { "double torus", PointsOn(DoubleTorus(std::sqrt(0.03)), n), 1, 2 },
+    { "sphere", PointsOn(ball, n, 1, choice), 1, 0 },
+    { "torus", PointsOn(Torus(1, 0.4), n, 1, choice), 1, 1 },
+    { "double torus", PointsOn(DoubleTorus(std::sqrt(0.03)), n, 1, choice), 1, 2 },
     { "two spheres", apart, 2, 0 },
     { "nested spheres", nested, 2, 0 },
   };

@@ -43,13 +43,13 @@ void TestPrintSelf(Checks& checks)
   fitter->Update();
   std::ostringstream os;
   fitter->Print(os);
-  for (const char* name :
-    { "ModelBounds:", "Padding:", "GridSize:", "SampleDimensions:", "Dimension:",
-      "NormalConstraint:", "OffsetDistance:", "OffsetValue:", "InwardOffsetDistance:",
-      "InwardOffsetValue:", "Solver:", "NumberOfLevels:", "MaximumNumberOfIterations:",
-      "Tolerance:", "StoppingRule:", "StepSize:", "GenerateGradient:", "GenerateSupport:",
-      "OutputScalarType:", "NumberOfIterationsUsed:", "StepSizeUsed:", "Energy:", "AverageError:",
-      "MaximumError:", "Oscillation:", "OffsetDistanceUsed:", "GridSizeUsed: (12, 12, 12)" })
+  for (const char* name : { "ModelBounds:", "Padding:", "GridSize:", "SampleDimensions:",
+         "Dimension:", "NormalConstraint:", "OffsetDistance:", "OffsetValue:",
+         "InwardOffsetDistance:", "InwardOffsetValue:", "Solver:", "NumberOfLevels:",
+         "MaximumNumberOfIterations:", "Tolerance:", "StoppingRule:", "StepSize:",
+         "GenerateGradient:", "GenerateSupport:", "OutputScalarType:", "NumberOfIterationsUsed:",
+         "StepSizeUsed:", "Energy:", "AverageError:", "MaximumError:", "Oscillation:",
+         "OffsetDistanceUsed:", "GridSizeUsed: (12, 12, 12)", "ModelBoundsUsed:" })
   {
     checks.That(os.str().find(name) != std::string::npos, Text("PrintSelf has ", name));
   }
@@ -310,6 +310,26 @@ void TestDimension(Checks& checks)
       Text("dimension of the image with Dimension ", dimension));
   }
 }
+
+/// Planar points whose normals point out of their plane are a surface in a padded box.
+void TestPlaneInSpace(Checks& checks)
+{
+  ipiatest::OrientedPoints plane;
+  for (int i = 0; i < 400; ++i)
+  {
+    plane.Add({ 0.1 * (i % 20), 0.1 * (i / 20), 5 }, { 0, 0, 1 });
+  }
+  auto fitter = NewClassicFitter(ipiatest::ToPolyData(plane));
+  vtkNew<ipiatest::MessageObserver> messages;
+  messages->Watch(fitter);
+  fitter->Update();
+  messages->CheckOneWarning(checks, "which is open there", "plane in space");
+  checks.Equal(fitter->GetOutput()->GetDataDimension(), 3, "dimension of a plane in space");
+  double above[3] = { 1, 1, 5.1 }, below[3] = { 1, 1, 4.9 };
+  vtkIPIAImplicitFunction* f = fitter->GetImplicitFunction();
+  checks.That(f->EvaluateFunction(above) > 0.05 && f->EvaluateFunction(below) < -0.05,
+    "the sides of a plane in space");
+}
 }
 
 int TestImplicitFitterParameters(int, char*[])
@@ -328,5 +348,6 @@ int TestImplicitFitterParameters(int, char*[])
   TestExtraRows(checks);
   TestOffsets(checks);
   TestDimension(checks);
+  TestPlaneInSpace(checks);
   return checks.Result();
 }
