@@ -35,7 +35,7 @@ struct FarField
 
 struct FarFieldOptions
 {
-  double Threshold = 0.05; ///< a cell is unsupported where s < Threshold
+  double Threshold = 0.01; ///< a cell is unsupported where s < Threshold
   double Magnitude = 1;    ///< |f| there
   int Threads = 0;
 };
@@ -48,7 +48,8 @@ double medianSupport(
 /**
  * Finds the cells where the spline does not count, in two steps.
  *
- * 1. Cells without support: s(x) = sum_i B_i(x) S_i with S_i = sum_k B_i(x_k) over all rows, scaled
+ * 1. Cells without support: s(x) = sum_i B_i(x) S_i with S_i the sum of B_i over the centres of the
+ *    knot cells that hold rows (one each, so that thinly sampled parts count as data too), scaled
  * so that its median at the data points is 1, is below the threshold at the centre. Each connected
  *    region of them takes the sign of the larger share of the supported cells around it.
  * 2. Signs that nothing vouches for: on the grid of half knot spacings, a connected region where f

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ImplicitFit.h"
 
+#include "CubicBasis.h"
 #include "Parallel.h"
 
 namespace ipia
@@ -68,6 +69,45 @@ Points<Dim> withExtra(const FitInput<Dim>& input, Points<Dim> positions, int sig
   return positions;
 }
 
+/// The support that every knot cell with rows gives, however many they are: sum over these cells of
+/// B_i at their centre. Where points lie thinly beside dense ones they count as data all the same.
+template <int Dim>
+Vector cellSupport(const ConstraintRows<Dim>& rows)
+{
+  const Lattice<Dim>& lattice = rows.lattice();
+  const BasisValues basis = cubicBasis(0.5);
+  Vector support = Vector::Zero(lattice.numberOfCoefficients());
+  const std::int64_t occupied = rows.tileBegin(rows.numberOfTiles());
+  for (std::int64_t c = 0; c < occupied; ++c)
+  {
+    for (int k = 0; k < (Dim == 2 ? 16 : 64); ++k)
+    {
+      std::int64_t index = rows.cells()[c].Coefficient, stride = 1;
+      double product = 1;
+      for (int a = 0, rest = k; a < Dim; ++a, rest /= Order)
+      {
+        index += rest % Order * stride;
+        stride *= lattice.Size[a];
+        product *= basis[static_cast<std::size_t>(rest % Order)];
+      }
+      support[index] += product;
+    }
+  }
+  return support;
+}
+
+/// Scales support so that its median at the points is 1.
+template <int Dim>
+void scaleToMedian(
+  const Lattice<Dim>& lattice, const Points<Dim>& dataPoints, int threads, Vector& support)
+{
+  const double typical = medianSupport(lattice, support, dataPoints, threads);
+  if (typical > 0)
+  {
+    support /= typical;
+  }
+}
+
 template <int Dim>
 Vector valuesAt(const ImplicitSpline<Dim>& function, const Points<Dim>& positions, int threads)
 {
@@ -117,22 +157,19 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
 
   Vector support;
   collocation.support(support);
-  const double typical =
-    medianSupport(lattice, support, input.Positions, resolveThreads(options.Threads));
-  if (typical > 0)
-  {
-    support /= typical;
-  }
+  scaleToMedian(lattice, input.Positions, resolveThreads(options.Threads), support);
   FarFieldOptions farOptions = options.FarField;
   farOptions.Threads = options.Threads;
   FarField far;
   if (farOptions.Threshold > 0 && solved.Status == SolverStatus::Done)
   {
+    Vector occupancy = cellSupport(rows);
+    scaleToMedian(lattice, input.Positions, resolveThreads(options.Threads), occupancy);
     const double probe = WitnessDistance * lattice.Spacing.maxCoeff();
     const Points<Dim> outside = withExtra<Dim>(input, input.Positions + probe * input.Normals, 1);
     const Points<Dim> inside = withExtra<Dim>(input, input.Positions - probe * input.Normals, -1);
-    far =
-      computeFarField(lattice, support, coefficients, outside, inside, input.Positions, farOptions);
+    far = computeFarField(
+      lattice, occupancy, coefficients, outside, inside, input.Positions, farOptions);
   }
 
   FitResult<Dim> result{ ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)),

@@ -61,8 +61,8 @@ public:
   {
   }
 
-  /// Records the state of the current coefficients; true to iterate on.
-  bool proceed(double gradientNorm, double energyChange)
+  /// Appends to the history; called once for each state of the coefficients.
+  double record(double gradientNorm)
   {
     if (this->Result.NumberOfIterations == 0)
     {
@@ -70,6 +70,13 @@ public:
     }
     const double relative = this->FirstNorm > 0 ? gradientNorm / this->FirstNorm : 0.0;
     this->Result.ResidualHistory.push_back(relative);
+    return relative;
+  }
+
+  /// Records the state of the current coefficients; true to iterate on.
+  bool proceed(double gradientNorm, double energyChange)
+  {
+    const double relative = this->record(gradientNorm);
     const double measure =
       this->Options.Rule == StoppingRule::RelativeResidual ? relative : energyChange;
     if (gradientNorm == 0 || measure < this->Options.Tolerance ||
@@ -97,6 +104,27 @@ private:
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
+/// Rounding of a value f(x), a sum of up to 64 products, in units of the largest coefficient.
+constexpr double RoundingOfValues = 64 * std::numeric_limits<double>::epsilon();
+
+/**
+ * Whether the energy rose by more than rounding, which a converging step never does. Near 0, where
+ * all rows are met, the energy is rounding alone and goes up and down.
+ *
+ * @param weightSum  sum_k w_k
+ */
+bool energyRose(double before, double after, double weightSum, const Vector& coefficients)
+{
+  if (after <= before)
+  {
+    return false;
+  }
+  // By the triangle inequality for sqrt(E), the weighted norm of the residuals.
+  const double rounding =
+    std::sqrt(weightSum) * RoundingOfValues * coefficients.cwiseAbs().maxCoeff();
+  return !(std::sqrt(after) <= std::sqrt(before) * (1 + 1e-6) + rounding);
+}
+
 template <int Dim>
 void progressiveIteration(const CollocationOperator<Dim>& collocation, const SolverOptions& options,
   Vector& c, IterationControl& control, SolverResult& result)
@@ -105,6 +133,7 @@ void progressiveIteration(const CollocationOperator<Dim>& collocation, const Sol
   Vector gradient;
   collocation.columnSums(gradient);
   const double largest = gradient.size() ? gradient.maxCoeff() : 0.0;
+  const double weightSum = gradient.sum(); // the basis is a partition of unity
   result.StepSize = options.StepSize > 0 ? options.StepSize : largest > 0 ? 2 / largest : 0.0;
 
   double before = Infinity;
@@ -115,14 +144,17 @@ void progressiveIteration(const CollocationOperator<Dim>& collocation, const Sol
     vectors.add(result.StepSize, gradient, c);
     before = result.Energy;
     result.Energy = collocation.residual(c, gradient);
-    // A converging step never raises the energy by more than rounding does.
-    if (!(result.Energy <= before * (1 + 1e-6) + std::numeric_limits<double>::min()))
+    if (energyRose(before, result.Energy, weightSum, c))
     {
+      control.record(std::sqrt(vectors.dot(gradient, gradient)));
       result.Status = SolverStatus::Diverged;
       return;
     }
   }
 }
+
+/// Where the residual of conjugate gradients ends as rounding, in units of the largest it had.
+constexpr double RoundingOfResidual = 32 * std::numeric_limits<double>::epsilon();
 
 template <int Dim>
 void conjugateGradient(const CollocationOperator<Dim>& collocation, Vector& c,
@@ -133,14 +165,25 @@ void conjugateGradient(const CollocationOperator<Dim>& collocation, Vector& c,
   result.Energy = collocation.residual(c, residual);
   Vector direction = residual;
   double squaredNorm = vectors.dot(residual, residual);
+  double largestSquaredNorm = squaredNorm;
   double energyChange = Infinity;
   while (control.proceed(std::sqrt(squaredNorm), energyChange))
   {
-    collocation.normalProduct(direction, product);
-    const double curvature = vectors.dot(direction, product);
+    // Rounding leaves a part in the null space of B that no step reduces. Once it is all that is
+    // left, the curvature along it is nearly 0, and a step would throw the coefficients far away.
+    largestSquaredNorm = std::max(largestSquaredNorm, squaredNorm);
+    const bool exhausted =
+      squaredNorm <= RoundingOfResidual * RoundingOfResidual * largestSquaredNorm;
+    double curvature = 0;
+    if (!exhausted)
+    {
+      collocation.normalProduct(direction, product);
+      curvature = vectors.dot(direction, product);
+    }
     if (!(curvature > 0))
     {
-      break; // rounding has used up the Krylov space
+      --result.NumberOfIterations; // that step is not made
+      break;
     }
     const double step = squaredNorm / curvature;
     vectors.add(step, direction, c);

@@ -34,7 +34,8 @@ struct SolverOptions
 {
   SolverType Type = SolverType::ProgressiveIteration;
   int MaximumNumberOfIterations = 100;
-  double Tolerance = 0; ///< 0: all iterations are done
+  /// 0: all iterations are done; conjugate gradients still end where only rounding is left.
+  double Tolerance = 0;
   StoppingRule Rule = StoppingRule::RelativeResidual;
   double StepSize = 0; ///< mu; 0: 2 / max_i sum_k w_k B_i(x_k), which always converges
 };

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures 6, 7 and 8: fine grids, an open surface and details."""
+
+from .drawing import BLUE, RED, Sheet, View, points_actor, surface_actor
+from .fitting import fit
+from .robustness import facing
+
+TILE_SIZE = (420, 420)
+
+ARMADILLO_VIEW = View(direction=(-0.35, 0.15, -1.0))
+COARSE_GRID = 100
+SPARSE_SHARE = 0.3
+
+GYROID_VIEW = View(direction=(0.6, 0.4, 1.0))
+
+# Whole model and two enlargements (centre, half height of the part).
+ENLARGED = (
+    ("Buddha", "temple lion (for Buddha)", (0.2, 0.15, 1.0),
+     (((0.02, 0.25, 0.2), 0.17), ((0.0, -0.15, 0.2), 0.17))),
+    ("BU", "diplodocus (for BU)", (0.15, 0.15, 1.0),
+     (((0.35, 0.35, 0.0), 0.14), ((0.0, -0.1, 0.0), 0.17))),
+)
+
+
+def figure_6(lab):
+    full = lab.library.cloud("Armadillo")
+    sparse = full.random_subset(int(SPARSE_SHARE * len(full)), lab.library.random("sparse"))
+    fine_settings = lab.library.settings("Armadillo")
+    coarse_grid = lab.library.grid(COARSE_GRID)
+    coarse = lab.record(f"armadillo, coarse grid {coarse_grid}",
+                        fit(full, fine_settings.but(grid=coarse_grid)))
+    fine = lab.record(f"armadillo, 30 % of the points, fine grid {fine_settings.grid}",
+                      fit(sparse, fine_settings))
+    sheet = Sheet(1, 4, TILE_SIZE)
+    for column, (letter, cloud) in enumerate((("a", full), ("b", sparse))):
+        sheet.tile(0, column, f"({letter}) {len(cloud)} points",
+                   [points_actor(facing(cloud, ARMADILLO_VIEW), BLUE, size=1)], ARMADILLO_VIEW)
+    sheet.tile(0, 2, f"(c) from (a), grid {coarse_grid}\u00b3", [surface_actor(coarse.contour)],
+               ARMADILLO_VIEW)
+    sheet.tile(0, 3, f"(d) from (b), grid {fine_settings.grid}\u00b3",
+               [surface_actor(fine.contour)], ARMADILLO_VIEW)
+    return sheet
+
+
+def figure_7(lab):
+    cloud = lab.library.cloud("Gyroid")
+    made = lab.record("gyroid", lab.standard_fit("Gyroid"), closed=False)
+    sheet = Sheet(1, 3, TILE_SIZE)
+    sheet.tile(0, 0, f"(a) gyroid, {len(cloud)} points",
+               [points_actor(facing(cloud, GYROID_VIEW), BLUE, size=1)], GYROID_VIEW)
+    sheet.tile(0, 1, "(b) surface", [surface_actor(made.contour)], GYROID_VIEW)
+    sheet.tile(0, 2, "(c) with the points", [surface_actor(made.contour),
+                                             points_actor(cloud.points, RED, size=1)], GYROID_VIEW)
+    return sheet
+
+
+def figure_8(lab):
+    sheet = Sheet(len(ENLARGED), 3, TILE_SIZE)
+    for row, (name, title, direction, parts) in enumerate(ENLARGED):
+        made = lab.record(title, lab.standard_fit(name))
+        sheet.tile(row, 0, title, [surface_actor(made.contour)], View(direction))
+        for column, (centre, half_height) in enumerate(parts, start=1):
+            sheet.tile(row, column, "enlarged", [surface_actor(made.contour)],
+                       View(direction, centre=centre, half_height=half_height))
+    return sheet
