@@ -237,7 +237,9 @@ struct ImplicitSpline<Dim>::Nearest
     {
       const double inside = std::min(std::max(position[a], 0.0), lattice.extent(a));
       this->At[a] = lattice.locate(inside, a);
-      this->Away[a] = position[a] - inside;
+      // An end of the domain that rounding has put outside is not outside.
+      const double away = position[a] - inside;
+      this->Away[a] = std::abs(away) <= 1e-12 * lattice.extent(a) ? 0.0 : away;
       cell[a] = this->At[a].Cell;
     }
     this->Cell = lattice.cellIndex(cell);
