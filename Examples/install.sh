@@ -14,38 +14,56 @@ as_root()
   fi
 }
 
-# stage_end SECONDS: ends the line of a stage with its duration.
-stage_end()
+# percent_done LOG: by what ninja ([n/m]) or apt-get (APT::Status-Fd) wrote there last, else 0.
+percent_done()
 {
-  printf '%*s%5d s\n' "$((STAGE_WIDTH > 0 ? STAGE_WIDTH : 0))" "" "$1"
+  tail -n 200 "$1" | awk '
+    /^\[[0-9]+\/[0-9]+\]/ { split(substr($1, 2), count, /[\/\]]/); done = 100 * count[1] / count[2] }
+    /^dlstatus:/ { split($0, field, ":"); done = 0.3 * field[3] }
+    /^pmstatus:/ { split($0, field, ":"); done = 30 + 0.7 * field[3] }
+    END { print int(done) }'
 }
 
-# run_quietly NAME LOG COMMAND...: one line with a dot every second; the log only if it fails.
+# show_tens PERCENT: the line 0...10...20 up to there; SHOWN is how far it is.
+show_tens()
+{
+  while [ $((SHOWN + 10)) -le "$1" ]; do
+    SHOWN=$((SHOWN + 10))
+    [ "$SHOWN" = 0 ] || printf '...'
+    printf '%d' "$SHOWN"
+  done
+}
+
+# run_quietly NAME LOG COMMAND...: one line with progress and duration; the log only if it fails.
 run_quietly()
 {
-  local name=$1 log=$2 start=$SECONDS job
+  local name=$1 log=$2 start=$SECONDS job percent
   shift 2
   printf '%-10s' "$name"
+  SHOWN=-10
   "$@" > "$log" 2>&1 &
   job=$!
-  STAGE_WIDTH=53
   while kill -0 "$job" 2> /dev/null; do
     sleep 0.5
-    if [ $((SECONDS - start)) -gt $((53 - STAGE_WIDTH)) ] && [ "$STAGE_WIDTH" -gt 0 ]; then
-      printf '.'
-      STAGE_WIDTH=$((STAGE_WIDTH - 1))
-    fi
+    percent=$(percent_done "$log")
+    [ "$percent" = 0 ] || show_tens "$percent"
   done
   if ! wait "$job"; then
     echo " failed"
     if [ -n "${WILL_RETRY:-}" ]; then
       return 1
     fi
-    tail -n 40 "$log" >&2
+    grep -av '^[dp][lm]status:' "$log" | tail -n 40 >&2
     echo "error: $name failed; all of it is in $log" >&2
     return 1
   fi
-  stage_end $((SECONDS - start))
+  # As wide as 0...10...20...30...40...50...60...70...80...90...100
+  if [ "$SHOWN" -ge 0 ]; then
+    show_tens 100
+  else
+    printf '%52s' ""
+  fi
+  printf '%5d s\n' $((SECONDS - start))
 }
 
 missing_packages()
@@ -87,7 +105,7 @@ install_packages()
   update_index "$log" "${missing[@]}"
   echo "missing   ${missing[*]}"
   local install=(env DEBIAN_FRONTEND=noninteractive
-    apt-get install -y --no-install-recommends "${missing[@]}")
+    apt-get install -y --no-install-recommends -o APT::Status-Fd=1 "${missing[@]}")
   if ! WILL_RETRY=yes run_quietly "install" "$log" as_root "${install[@]}"; then
     # An old index names files that the mirrors no longer have.
     run_quietly "index" "$log" as_root apt-get update

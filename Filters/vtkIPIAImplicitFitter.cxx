@@ -505,21 +505,28 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
     return array;
   };
 
+  // Sampling reports from one thread, which may find nothing left to do; so each end is reported.
+  const auto finish = [&]
+  {
+    ++finished;
+    return progress(0);
+  };
+
   auto f = newArray("f", 1);
-  if (!sampleInto<Dim>(f.Get(), 0, fit.Result.Function, positions, -1, progress))
+  if (!sampleInto<Dim>(f.Get(), 0, fit.Result.Function, positions, -1, progress) || !finish())
   {
     return false;
   }
   image->GetPointData()->SetScalars(f);
-  ++finished;
   if (this->GenerateGradient)
   {
     auto gradient = newArray("Gradient", 3);
     gradient->Fill(0);
-    for (int a = 0; a < Dim; ++a, ++finished)
+    for (int a = 0; a < Dim; ++a)
     {
       if (!sampleInto<Dim>(gradient.Get(), fit.Place.Axis[static_cast<std::size_t>(a)],
-            fit.Result.Function, positions, a, progress))
+            fit.Result.Function, positions, a, progress) ||
+        !finish())
       {
         return false;
       }
@@ -530,7 +537,7 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
   {
     auto support = newArray("Support", 1);
     const ipia::ImplicitSpline<Dim> density(fit.Result.Function.lattice(), fit.Result.Support);
-    if (!sampleInto<Dim>(support.Get(), 0, density, positions, -1, progress))
+    if (!sampleInto<Dim>(support.Get(), 0, density, positions, -1, progress) || !finish())
     {
       return false;
     }
@@ -677,9 +684,10 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   using ipia::triple;
-  const double* b = this->ModelBounds;
-  os << indent << "ModelBounds: (" << b[0] << ", " << b[1] << ", " << b[2] << ", " << b[3] << ", "
-     << b[4] << ", " << b[5] << ")\n";
+  const auto bounds = [](const double* b)
+  { return text("(", b[0], ", ", b[1], ", ", b[2], ", ", b[3], ", ", b[4], ", ", b[5], ")"); };
+  os << indent << "ModelBounds: " << bounds(this->ModelBounds) << "
+";
   os << indent << "Padding: " << this->Padding << "\n";
   os << indent << "GridSize: " << triple(this->GridSize) << "\n";
   os << indent << "SampleDimensions: " << triple(this->SampleDimensions) << "\n";
@@ -711,4 +719,5 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NoiseFound: " << this->NoiseFound << "\n";
   os << indent << "SmoothingLengthUsed: " << this->SmoothingLengthUsed << "\n";
   os << indent << "GridSizeUsed: " << triple(this->GridSizeUsed) << "\n";
+  os << indent << "ModelBoundsUsed: " << bounds(this->ModelBoundsUsed) << "\n";
 }

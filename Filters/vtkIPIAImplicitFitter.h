@@ -36,11 +36,12 @@
  * ### Far field
  * Where no row touches a coefficient it stays 0, and contour filters would draw a second sheet
  * along the inner side of the data. Knot cells with little support (sum_i B_i sum_c B_i(x_c) over
- * the centres x_c of the cells that hold rows is below 1/100 of its median at the data, however
+ * the centres x_c of the cells that hold rows is below 1/20 of its median at the data, however
  * many rows they hold) therefore take a constant: the OffsetValue used, with the sign of f around
- * their connected region. A region that meets both signs (an open surface, a wide hole) takes that
- * of the larger share and a warning says so. So do cells of regions of one sign that no point
- * vouches for: bubbles that many iterations raise beside the data.
+ * their connected region. A region that meets both signs keeps the spline down to 1/25 of that
+ * support, so that small holes close; what is left and still meets both (an open surface, a wide
+ * hole) takes that of the larger share and a warning says so. So do cells of regions of one sign
+ * that no point vouches for: bubbles that many iterations raise beside the data.
  *
  * ### Input
  * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of

@@ -140,30 +140,30 @@ def read_text(path):
     The first line may be the number of points. Then .pwn files may hold the points and after them
     the normals, each with three columns. Further columns (intensity, colour) are not used.
     """
-    with open(path, encoding="utf-8", errors="strict") as file:
-        lines = (line.split("#", 1)[0].replace(",", " ").split() for line in file)
-        rows = [line for line in lines if line]
-    count = int(rows.pop(0)[0]) if rows and len(rows[0]) == 1 and rows[0][0].isdigit() else None
-    if not rows:
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().replace(",", " ").splitlines()
+    while lines and not lines[0].split("#", 1)[0].strip():
+        lines.pop(0)
+    count = None
+    if lines and lines[0].strip().isdigit():
+        count = int(lines.pop(0))
+    if not lines:
         raise UserError("it has no points")
-    width = len(rows[0])
+    try:
+        table = np.loadtxt(lines, ndmin=2)
+    except ValueError as error:
+        if "columns changed" in str(error):
+            raise UserError("its lines have different numbers of columns") from error
+        raise UserError(f"it is not a table of numbers ({error})") from error
+    width = table.shape[1]
     if width < 3:
         raise UserError(f"its lines have {width} columns; at least x y z are needed")
-    for row in rows:
-        if len(row) != width:
-            raise UserError(
-                f"its lines have different numbers of columns ({width}, then {len(row)}: "
-                f"'{' '.join(row)[:40]}')"
-            )
-    try:
-        table = np.array(rows, dtype=float)
-    except ValueError as error:
-        raise UserError(f"it is not a table of numbers ({error})") from error
     if width == 3 and count is not None and len(table) == 2 * count:
         return polydata(table[:count], table[count:])
     if count is not None and count != len(table):
         raise UserError(f"its first line announces {count} points, but {len(table)} lines follow")
-    if width < 6 or looks_like_colours(table[:, 3:6]) or looks_like_colours(table[:, -3:]):
+    intensity_and_colours = width == 7 and looks_like_colours(table[:, 4:])
+    if width < 6 or intensity_and_colours or looks_like_colours(table[:, 3:6]):
         return polydata(table[:, :3])
     return polydata(table[:, :3], table[:, 3:6])
 

@@ -35,8 +35,8 @@ DEFAULT_OUTPUT = Path("ipia-output/paper-2019")
 SETTINGS = f"""\
 Settings (the paper gives neither its offset distances and values nor its iteration counts):
   every model is centred with the longest side of its bounding box 1; Omega is the cube (square)
-  [-{DOMAIN_HALF_SIDE}, {DOMAIN_HALF_SIDE}]^d, for the gyroid [-0.5, 0.5]^3; {ITERATIONS} iterations from zero with the paper's mu;
-  offset points on both sides at 1.5 knot spacings, less where another data point would be nearer;
+  [-{DOMAIN_HALF_SIDE}, {DOMAIN_HALF_SIDE}]^d, for the gyroid [-0.5, 0.5]^3; {ITERATIONS} iterations
+  from zero with the paper's mu; offset points on both sides at 1.5 knot spacings, less where another data point would be nearer;
   f there is plus or minus that distance, so that errors |f| are distances in units of the longest
   side. What differs in a figure is noted below it.
   Times are of one fit with sampling, on the cores of this machine; the paper's are of MATLAB on an
@@ -81,7 +81,10 @@ def _parse_arguments():
 
 def _make_figure(lab, name, path):
     known = len(lab.outcomes)
+    path.unlink(missing_ok=True)
     FIGURES[name](lab).write(path)
+    if not path.is_file():
+        sys.exit(f"reproduce_ipia_2019.py: {path} could not be written")
     print(f"\n{path}")
     for outcome in lab.outcomes[known:]:
         print(f"  {outcome}")

@@ -20,6 +20,7 @@ namespace ipia
 {
 using Vector4 = double __attribute__((vector_size(32)));
 using Vector8 = double __attribute__((vector_size(64)));
+using FloatVector8 = float __attribute__((vector_size(32)));
 
 enum class InstructionSet
 {

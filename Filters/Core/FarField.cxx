@@ -83,6 +83,10 @@ struct Grid
   }
 };
 
+/// Where the rim of a region has both signs (the surface passes through it), the spline counts down
+/// to this share of the threshold.
+constexpr double MixedRegionShare = 0.04;
+
 /// Step 1: each connected region of unsupported cells takes the sign of its rim.
 template <int Dim>
 void signUnsupportedRegions(const Lattice<Dim>& lattice, const Vector& support,
@@ -90,54 +94,66 @@ void signUnsupportedRegions(const Lattice<Dim>& lattice, const Vector& support,
 {
   const Grid<Dim> cells{ lattice.numberOfCellsPerAxis() };
   const AxisPositions<Dim> centres = gridPositions(lattice, 1, 0.5);
-  std::vector<double> values(static_cast<std::size_t>(cells.size()));
-  ImplicitSpline<Dim>(lattice, support).sample(centres, values.data(), threads);
-
-  constexpr std::int8_t unvisited = 2;
-  far.Sign.resize(values.size());
-  for (std::size_t c = 0; c < values.size(); ++c)
-  {
-    far.Sign[c] = values[c] < threshold ? unvisited : 0;
-  }
+  std::vector<double> density(static_cast<std::size_t>(cells.size())), values(density.size());
+  ImplicitSpline<Dim>(lattice, support).sample(centres, density.data(), threads);
   ImplicitSpline<Dim>(lattice, coefficients).sample(centres, values.data(), threads);
-  std::vector<std::int64_t> region;
-  for (std::size_t seed = 0; seed < far.Sign.size(); ++seed)
+
+  constexpr std::int8_t unvisited = 2, again = 3;
+  far.Sign.resize(values.size());
+  for (std::size_t c = 0; c < density.size(); ++c)
   {
-    if (far.Sign[seed] != unvisited)
+    far.Sign[c] = density[c] < threshold ? unvisited : 0;
+  }
+  std::vector<std::int64_t> region;
+  const auto signRegions = [&](bool last)
+  {
+    for (std::size_t seed = 0; seed < far.Sign.size(); ++seed)
     {
-      continue;
-    }
-    std::int64_t positive = 0, negative = 0;
-    region.assign(1, static_cast<std::int64_t>(seed));
-    far.Sign[seed] = 1;
-    for (std::size_t next = 0; next < region.size(); ++next)
-    {
-      cells.forNeighbours(region[next],
-        [&](std::int64_t neighbour)
-        {
-          const auto c = static_cast<std::size_t>(neighbour);
-          if (far.Sign[c] == unvisited)
-          {
-            far.Sign[c] = 1;
-            region.push_back(neighbour);
-          }
-          else if (far.Sign[c] == 0)
-          {
-            positive += values[c] > 0;
-            negative += values[c] < 0;
-          }
-        });
-    }
-    if (negative > positive)
-    {
-      for (const std::int64_t c : region)
+      if (far.Sign[seed] != unvisited)
       {
-        far.Sign[static_cast<std::size_t>(c)] = -1;
+        continue;
+      }
+      std::int64_t positive = 0, negative = 0;
+      region.assign(1, static_cast<std::int64_t>(seed));
+      far.Sign[seed] = 1;
+      for (std::size_t next = 0; next < region.size(); ++next)
+      {
+        cells.forNeighbours(region[next],
+          [&](std::int64_t neighbour)
+          {
+            const auto c = static_cast<std::size_t>(neighbour);
+            if (far.Sign[c] == unvisited)
+            {
+              far.Sign[c] = 1;
+              region.push_back(neighbour);
+            }
+            else if (far.Sign[c] == 0)
+            {
+              positive += values[c] > 0;
+              negative += values[c] < 0;
+            }
+          });
+      }
+      // A few stray cells on the rim are noise; a rim that meets both sides is not.
+      const bool mixed = 10 * std::min(positive, negative) > positive + negative;
+      far.NumberOfMixedRegions += mixed && last;
+      for (const std::int64_t cell : region)
+      {
+        const auto c = static_cast<std::size_t>(cell);
+        if (mixed && !last)
+        {
+          far.Sign[c] = density[c] < MixedRegionShare * threshold ? again : 0;
+        }
+        else if (negative > positive)
+        {
+          far.Sign[c] = -1;
+        }
       }
     }
-    // A few stray cells on the rim are noise; a rim that meets both sides is not.
-    far.NumberOfMixedRegions += 10 * std::min(positive, negative) > positive + negative;
-  }
+  };
+  signRegions(false);
+  std::replace(far.Sign.begin(), far.Sign.end(), again, unvisited);
+  signRegions(true);
 }
 
 /// Step 2: regions of one sign that no data point vouches for take the other.

@@ -35,7 +35,7 @@ struct FarField
 
 struct FarFieldOptions
 {
-  double Threshold = 0.01; ///< a cell is unsupported where s < Threshold
+  double Threshold = 0.05; ///< a cell is unsupported where s < Threshold
   double Magnitude = 1;    ///< |f| there
   int Threads = 0;
 };
@@ -51,7 +51,9 @@ double medianSupport(
  * 1. Cells without support: s(x) = sum_i B_i(x) S_i with S_i the sum of B_i over the centres of the
  *    knot cells that hold rows (one each, so that thinly sampled parts count as data too), scaled
  * so that its median at the data points is 1, is below the threshold at the centre. Each connected
- *    region of them takes the sign of the larger share of the supported cells around it.
+ *    region of them takes the sign of the larger share of the supported cells around it. Where
+ * these have both signs the spline counts first down to 1/25 of the threshold, so that holes of a
+ * few knot spacings close.
  * 2. Signs that nothing vouches for: on the grid of half knot spacings, a connected region where f
  * > 0 must hold a position just outside some data point, one where f < 0 a position just inside;
  *    otherwise the cells of that region take the opposite sign, but for those that hold data

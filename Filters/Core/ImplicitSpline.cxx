@@ -45,6 +45,42 @@ AxisTable makeAxisTable(
   return table;
 }
 
+/// Samples that the kernels take at a time, the lanes of a vector.
+constexpr std::int64_t Lanes = 8;
+
+/// The samples along x by knot cell, and their weights one basis function after another, with room
+/// for a whole vector from any sample on.
+struct SampleRow
+{
+  struct CellRun
+  {
+    std::int64_t Cell, Begin, End;
+  };
+  std::vector<CellRun> Cells;
+  std::array<std::vector<double>, Order> Weight;
+
+  explicit SampleRow(const AxisTable& table)
+  {
+    for (std::int64_t x = 0; x < table.size(); ++x)
+    {
+      const std::int64_t cell = table.Cell[static_cast<std::size_t>(x)];
+      if (this->Cells.empty() || this->Cells.back().Cell != cell)
+      {
+        this->Cells.push_back({ cell, x, x });
+      }
+      this->Cells.back().End = x + 1;
+    }
+    for (std::size_t j = 0; j < Order; ++j)
+    {
+      this->Weight[j].assign(static_cast<std::size_t>(table.size() + Lanes), 0.0);
+      for (std::size_t x = 0; x < table.Weight.size(); ++x)
+      {
+        this->Weight[j][x] = table.Weight[x][j];
+      }
+    }
+  }
+};
+
 /// A block of samples: some rows of y, some slices of z, all of x. In 2-D there is one slice.
 struct SampleBlock
 {
@@ -53,7 +89,7 @@ struct SampleBlock
 
 /// Number of sample rows and slices of a block; the expanded rows of four slices fit the cache.
 constexpr std::int64_t BlockRows = 16;
-constexpr std::int64_t BlockSlices = 32;
+constexpr std::int64_t BlockSlices = 64;
 
 /// All that the samples of one grid share.
 template <int Dim>
@@ -66,6 +102,7 @@ struct SampleGrid
   const FarField& Far;
   bool Derivative;
   AxisTable X, Y, Z;
+  SampleRow Row;
   /// The far field by runs of samples: for each row of cells, [begin, end) and sign of each run.
   struct Run
   {
@@ -123,53 +160,174 @@ struct SampleGrid
   }
 };
 
+/**
+ * Samples of a block. All arithmetic is on whole vectors, past the end of a row too, so that a
+ * sample has the same bits whatever its neighbours are.
+ */
 template <int Dim, typename Scalar>
 struct SampleKernel
 {
   using Grid = SampleGrid<Dim>;
 
+  /// Neighbouring samples along y or z that share what they load.
+  static constexpr std::int64_t GroupSize = 4;
+
+  /// The end of the group that begins with sample @a i: up to GroupSize of one cell.
+  static std::int64_t groupEnd(const AxisTable& table, std::int64_t i, std::int64_t last)
+  {
+    const std::int64_t cell = table.Cell[static_cast<std::size_t>(i)];
+    std::int64_t end = i + 1;
+    while (end < std::min(last, i + GroupSize) && table.Cell[static_cast<std::size_t>(end)] == cell)
+    {
+      ++end;
+    }
+    return end;
+  }
+
+  /// Room for a row of samples and for the vector that starts at the last one.
+  static std::int64_t paddedRow(const Grid& grid)
+  {
+    return (grid.X.size() + 2 * Lanes - 2) / Lanes * Lanes;
+  }
+
+  static IPIA_INLINE void load(const double* from, Vector8& v) { std::memcpy(&v, from, sizeof(v)); }
+
+  static IPIA_INLINE void store(const Vector8& v, double* to) { std::memcpy(to, &v, sizeof(v)); }
+
+  static IPIA_INLINE void store(const Vector8& v, float* to)
+  {
+    const FloatVector8 rounded = __builtin_convertvector(v, FloatVector8);
+    std::memcpy(to, &rounded, sizeof(rounded));
+  }
+
+  /// sum = sum_k factors[k] v[k]
+  template <int Count>
+  static IPIA_INLINE void combine(const double* factors, const Vector8 (&v)[Count], Vector8& sum)
+  {
+    sum = factors[0] * v[0];
+    for (int k = 1; k < Count; ++k)
+    {
+      sum += factors[k] * v[k];
+    }
+  }
+
+  /// Count lines, out[i * stride + x] = sum_k weights[i][k] in[k][x] for x in [begin, end).
+  template <int Count, std::size_t Terms, typename Out>
+  static IPIA_INLINE void combineLines(const std::array<const double*, Terms>& in,
+    const BasisValues* weights, std::int64_t begin, std::int64_t end, Out* out, std::int64_t stride)
+  {
+    Vector8 v[Terms], sum;
+    std::int64_t x = begin;
+    for (; x + Lanes <= end; x += Lanes)
+    {
+      for (std::size_t k = 0; k < Terms; ++k)
+      {
+        load(in[k] + x, v[k]);
+      }
+      for (int i = 0; i < Count; ++i)
+      {
+        combine(weights[i].data(), v, sum);
+        store(sum, out + i * stride + x);
+      }
+    }
+    if (x < end)
+    {
+      std::array<Out, Lanes> lanes;
+      for (std::size_t k = 0; k < Terms; ++k)
+      {
+        load(in[k] + x, v[k]);
+      }
+      for (int i = 0; i < Count; ++i)
+      {
+        combine(weights[i].data(), v, sum);
+        store(sum, lanes.data());
+        std::copy(lanes.begin(), lanes.begin() + (end - x), out + i * stride + x);
+      }
+    }
+  }
+
+  /// The same for 1 to GroupSize lines.
+  template <std::size_t Terms, typename Out>
+  static IPIA_INLINE void combineGroup(std::int64_t count,
+    const std::array<const double*, Terms>& in, const BasisValues* weights, std::int64_t begin,
+    std::int64_t end, Out* out, std::int64_t stride)
+  {
+    switch (count)
+    {
+      case 4:
+        combineLines<4>(in, weights, begin, end, out, stride);
+        break;
+      case 3:
+        combineLines<3>(in, weights, begin, end, out, stride);
+        break;
+      case 2:
+        combineLines<2>(in, weights, begin, end, out, stride);
+        break;
+      default:
+        combineLines<1>(in, weights, begin, end, out, stride);
+    }
+  }
+
   /// Slice k of the coefficients, expanded to the samples of the block along x and y.
   static IPIA_INLINE void expandSlice(const Grid& grid, const SampleBlock& block,
     std::int64_t slice, std::vector<double>& alongX, double* expanded)
   {
-    const std::int64_t n = grid.X.size();
+    const std::int64_t n = paddedRow(grid);
     const std::int64_t firstRow = grid.Y.Cell[static_cast<std::size_t>(block.FirstY)];
     const std::int64_t lastRow = grid.Y.Cell[static_cast<std::size_t>(block.LastY - 1)] + Order;
     const auto& size = grid.ControlLattice.Size;
-    alongX.resize(static_cast<std::size_t>((lastRow - firstRow) * n));
-    for (std::int64_t row = firstRow; row < lastRow; ++row)
+    std::array<const double*, Order> weight;
+    for (std::size_t j = 0; j < Order; ++j)
     {
-      const double* c = grid.Coefficients + (slice * size[1] + row) * size[0];
-      double* out = alongX.data() + (row - firstRow) * n;
-      for (std::int64_t x = 0; x < n; ++x)
+      weight[j] = grid.Row.Weight[j].data();
+    }
+    alongX.resize(static_cast<std::size_t>((lastRow - firstRow) * n));
+    Vector8 v[Order], sum;
+    for (const SampleRow::CellRun& run : grid.Row.Cells)
+    {
+      const double* c = grid.Coefficients + (slice * size[1] + firstRow) * size[0] + run.Cell;
+      for (std::int64_t x = run.Begin; x < run.End; x += Lanes)
       {
-        const double* at = c + grid.X.Cell[static_cast<std::size_t>(x)];
-        const BasisValues& w = grid.X.Weight[static_cast<std::size_t>(x)];
-        out[x] = w[0] * at[0] + w[1] * at[1] + w[2] * at[2] + w[3] * at[3];
+        for (std::size_t j = 0; j < Order; ++j)
+        {
+          load(weight[j] + x, v[j]);
+        }
+        // What a vector holds beyond its cell is overwritten by the next one.
+        double* out = alongX.data() + x;
+        for (std::int64_t row = 0; row < lastRow - firstRow; ++row)
+        {
+          combine(c + row * size[0], v, sum);
+          store(sum, out + row * n);
+        }
       }
     }
-    for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
+    std::int64_t next = block.FirstY;
+    for (std::int64_t y = block.FirstY; y < block.LastY; y = next)
     {
-      const double* in = alongX.data() + (grid.Y.Cell[static_cast<std::size_t>(y)] - firstRow) * n;
-      const BasisValues w = grid.Y.Weight[static_cast<std::size_t>(y)];
-      double* out = expanded + (y - block.FirstY) * n;
-      for (std::int64_t x = 0; x < n; ++x)
+      next = groupEnd(grid.Y, y, block.LastY);
+      std::array<const double*, Order> in;
+      for (std::size_t j = 0; j < Order; ++j)
       {
-        out[x] = w[0] * in[x] + w[1] * in[x + n] + w[2] * in[x + 2 * n] + w[3] * in[x + 3 * n];
+        in[j] = alongX.data() +
+          (grid.Y.Cell[static_cast<std::size_t>(y)] - firstRow + static_cast<std::int64_t>(j)) * n;
       }
+      combineGroup(
+        next - y, in, grid.Y.Weight.data() + y, 0, n, expanded + (y - block.FirstY) * n, n);
     }
   }
 
   static IPIA_INLINE void run(const Grid& grid, const SampleBlock& block, Scalar* values)
   {
-    const std::int64_t n = grid.X.size(), rows = grid.Y.size();
-    const std::int64_t sliceSize = (block.LastY - block.FirstY) * n;
+    const std::int64_t n = grid.X.size(), rows = grid.Y.size(), padded = paddedRow(grid);
+    const std::int64_t sliceSize = (block.LastY - block.FirstY) * padded;
     std::vector<double> alongX, window(static_cast<std::size_t>(Grid::Slices * sliceSize));
     std::array<std::int64_t, Grid::Slices> held;
     held.fill(-1);
-    for (std::int64_t z = block.FirstZ; z < block.LastZ; ++z)
+    std::int64_t next = block.FirstZ;
+    for (std::int64_t z = block.FirstZ; z < block.LastZ; z = next)
     {
       const std::int64_t cell = grid.Z.Cell[static_cast<std::size_t>(z)];
+      next = groupEnd(grid.Z, z, block.LastZ);
       bool spline = false;
       for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
       {
@@ -187,11 +345,11 @@ struct SampleKernel
         }
         slices[static_cast<std::size_t>(k)] = expanded;
       }
-      const BasisValues w = grid.Z.Weight[static_cast<std::size_t>(z)];
+      const BasisValues* w = grid.Z.Weight.data() + z;
       for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
       {
         const auto row = static_cast<std::size_t>(grid.cellRow(y, z));
-        const std::int64_t offset = (y - block.FirstY) * n;
+        const std::int64_t offset = (y - block.FirstY) * padded, imageSlice = rows * n;
         Scalar* out = values + (z * rows + y) * n;
         for (std::size_t r = grid.RunBegin[row]; r < grid.RunBegin[row + 1]; ++r)
         {
@@ -199,22 +357,20 @@ struct SampleKernel
           if (part.Sign != 0)
           {
             const double constant = grid.Derivative ? 0.0 : part.Sign * grid.Far.Magnitude;
-            std::fill(out + part.Begin, out + part.End, static_cast<Scalar>(constant));
-          }
-          else if (Dim == 3)
-          {
-            const double *a = slices[0] + offset, *b = slices[1 % Grid::Slices] + offset,
-                         *c = slices[2 % Grid::Slices] + offset,
-                         *d = slices[3 % Grid::Slices] + offset;
-            for (std::int64_t x = part.Begin; x < part.End; ++x)
+            for (std::int64_t k = 0; k < next - z; ++k)
             {
-              out[x] = static_cast<Scalar>(w[0] * a[x] + w[1] * b[x] + w[2] * c[x] + w[3] * d[x]);
+              Scalar* const slice = out + k * imageSlice;
+              std::fill(slice + part.Begin, slice + part.End, static_cast<Scalar>(constant));
             }
           }
           else
           {
-            std::copy(
-              slices[0] + offset + part.Begin, slices[0] + offset + part.End, out + part.Begin);
+            std::array<const double*, Grid::Slices> in;
+            for (std::size_t k = 0; k < Grid::Slices; ++k)
+            {
+              in[k] = slices[k] + offset;
+            }
+            combineGroup(next - z, in, w, part.Begin, part.End, out, imageSlice);
           }
         }
       }
@@ -238,7 +394,9 @@ struct ImplicitSpline<Dim>::Nearest
     {
       const double inside = std::min(std::max(position[a], 0.0), lattice.extent(a));
       this->At[a] = lattice.locate(inside, a);
-      this->Away[a] = position[a] - inside;
+      // An end of the domain that rounding has put outside is not outside.
+      const double away = position[a] - inside;
+      this->Away[a] = std::abs(away) <= 1e-12 * lattice.extent(a) ? 0.0 : away;
       cell[a] = this->At[a].Cell;
     }
     this->Cell = lattice.cellIndex(cell);
@@ -347,15 +505,15 @@ template <typename Scalar>
 bool ImplicitSpline<Dim>::sample(const AxisPositions<Dim>& positions, Scalar* values, int threads,
   int derivativeAxis, const ProgressCallback& progress) const
 {
+  const auto table = [&](int axis)
+  { return makeAxisTable(this->ControlLattice, axis, positions[axis], derivativeAxis == axis); };
+  const AxisTable alongX = table(0);
   SampleGrid<Dim> grid{ this->ControlLattice, this->Coefficients.data(), this->Far,
-    derivativeAxis >= 0, {}, {}, {}, {}, {} };
-  grid.X = makeAxisTable(this->ControlLattice, 0, positions[0], derivativeAxis == 0);
-  grid.Y = makeAxisTable(this->ControlLattice, 1, positions[1], derivativeAxis == 1);
-  grid.Z = { { 0 }, { BasisValues{ 1 } } };
+    derivativeAxis >= 0, alongX, table(1), { { 0 }, { BasisValues{ 1 } } }, SampleRow(alongX), {},
+    {} };
   if (Dim == 3)
   {
-    grid.Z =
-      makeAxisTable(this->ControlLattice, Dim - 1, positions[Dim - 1], derivativeAxis == Dim - 1);
+    grid.Z = table(Dim - 1);
   }
   grid.makeRuns();
 

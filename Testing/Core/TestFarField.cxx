@@ -101,6 +101,7 @@ template <int Dim, typename Check>
 void forCells(const ImplicitSpline<Dim>& function, const Check& check)
 {
   const Lattice<Dim>& lattice = function.lattice();
+  ASSERT_EQ(function.farField().Sign.size(), static_cast<std::size_t>(lattice.numberOfCells()));
   for (std::int64_t c = 0; c < lattice.numberOfCells(); ++c)
   {
     Point<Dim> centre;

@@ -9,14 +9,18 @@
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkFlyingEdges3D.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
+#include "vtkMassProperties.h"
 #include "vtkMath.h"
 #include "vtkMinimalStandardRandomSequence.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStaticPointLocator.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -41,8 +45,7 @@ struct OrientedPoints
 
   void Append(const OrientedPoints& other)
   {
-    this->Positions.insert(
-      this->Positions.end(), other.Positions.begin(), other.Positions.end());
+    this->Positions.insert(this->Positions.end(), other.Positions.begin(), other.Positions.end());
     this->Normals.insert(this->Normals.end(), other.Normals.begin(), other.Normals.end());
   }
 };
@@ -120,8 +123,7 @@ inline ImplicitShape Sphere(double radius, const Vector3& c)
 inline ImplicitShape Torus(double ring, double tube)
 {
   const double r = 1.05 * (ring + tube);
-  return { [=](const Vector3& x)
-    { return std::hypot(std::hypot(x[0], x[1]) - ring, x[2]) - tube; },
+  return { [=](const Vector3& x) { return std::hypot(std::hypot(x[0], x[1]) - ring, x[2]) - tube; },
     [=](const Vector3& x)
     {
       const double rho = std::hypot(x[0], x[1]);
@@ -175,30 +177,86 @@ inline vtkSmartPointer<vtkPolyData> Triangulate(const ImplicitShape& shape)
   return contour->GetOutput();
 }
 
-/**
- * n random points of a shape: vertices of a fine triangulation, brought onto it by Newton's method,
- * with the exact normals times @a side. As with a scan, their distances vary.
- */
-inline OrientedPoints PointsOn(const ImplicitShape& shape, vtkIdType n, double side = 1)
+/// How points are chosen among the vertices of a triangulation.
+enum class Choice
 {
-  auto surface = Triangulate(shape);
-  const vtkIdType available = surface->GetNumberOfPoints();
-  std::vector<vtkIdType> order(static_cast<std::size_t>(available));
-  for (vtkIdType i = 0; i < available; ++i)
-  {
-    order[static_cast<std::size_t>(i)] = i;
-  }
+  Even,  ///< as discs that are thrown at the surface until none fits
+  Random ///< any of them, so that gaps and clusters occur
+};
+
+/// All points of a data set in random order.
+inline std::vector<vtkIdType> ShuffledPoints(vtkPolyData* data)
+{
+  std::vector<std::pair<double, vtkIdType>> order;
   vtkNew<vtkMinimalStandardRandomSequence> random;
   random->SetSeed(1);
-  OrientedPoints cloud;
-  for (vtkIdType i = 0; i < std::min(n, available); ++i)
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
   {
     random->Next();
-    const auto other =
-      i + static_cast<vtkIdType>(random->GetValue() * static_cast<double>(available - i));
-    std::swap(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(other)]);
+    order.emplace_back(random->GetValue(), i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<vtkIdType> ids;
+  for (const auto& entry : order)
+  {
+    ids.push_back(entry.second);
+  }
+  return ids;
+}
+
+/// Points of a data set of which none are nearer to each other than a radius; every point left out
+/// is nearer to one of them.
+inline std::vector<vtkIdType> ThinnedPoints(vtkPolyData* data, double radius)
+{
+  vtkNew<vtkStaticPointLocator> locator;
+  locator->SetDataSet(data);
+  locator->BuildLocator();
+  std::vector<char> covered(static_cast<std::size_t>(data->GetNumberOfPoints()), 0);
+  std::vector<vtkIdType> chosen;
+  vtkNew<vtkIdList> near;
+  for (vtkIdType next : ShuffledPoints(data))
+  {
+    if (!covered[static_cast<std::size_t>(next)])
+    {
+      chosen.push_back(next);
+      locator->FindPointsWithinRadius(radius, data->GetPoint(next), near);
+      for (vtkIdType k = 0; k < near->GetNumberOfIds(); ++k)
+      {
+        covered[static_cast<std::size_t>(near->GetId(k))] = 1;
+      }
+    }
+  }
+  return chosen;
+}
+
+inline std::vector<vtkIdType> ChoosePoints(vtkPolyData* surface, vtkIdType n, Choice choice)
+{
+  if (choice == Choice::Random)
+  {
+    auto ids = ShuffledPoints(surface);
+    ids.resize(std::min(ids.size(), static_cast<std::size_t>(n)));
+    return ids;
+  }
+  vtkNew<vtkMassProperties> area;
+  area->SetInputData(surface);
+  area->Update();
+  // Discs thrown until none fits are about 0.7 / radius^2 to a unit of area.
+  return ThinnedPoints(surface, std::sqrt(0.7 * area->GetSurfaceArea() / static_cast<double>(n)));
+}
+
+/**
+ * About n points of a shape: vertices of a fine triangulation, brought onto the shape by Newton's
+ * method, with the exact normals times @a side.
+ */
+inline OrientedPoints PointsOn(
+  const ImplicitShape& shape, vtkIdType n, double side = 1, Choice choice = Choice::Even)
+{
+  auto surface = Triangulate(shape);
+  OrientedPoints cloud;
+  for (vtkIdType id : ChoosePoints(surface, n, choice))
+  {
     Vector3 x;
-    surface->GetPoint(order[static_cast<std::size_t>(i)], x.data());
+    surface->GetPoint(id, x.data());
     for (int step = 0; step < 5; ++step)
     {
       const Vector3 g = shape.Gradient(x);
@@ -220,17 +278,18 @@ struct KnownSurface
   int Components, Genus;
 };
 
-/// The shapes of the topology tests, n points each.
-inline std::vector<KnownSurface> KnownSurfaces(vtkIdType n)
+/// The shapes of the topology tests, about n points each.
+inline std::vector<KnownSurface> KnownSurfaces(vtkIdType n, Choice choice = Choice::Even)
 {
-  OrientedPoints apart = PointsOn(Sphere(1, { 0, 0, 0 }), n / 2);
-  apart.Append(PointsOn(Sphere(1, { 3, 0, 0 }), n / 2)); // the gap is one radius
-  OrientedPoints nested = PointsOn(Sphere(1, { 0, 0, 0 }), n * 4 / 5);
-  nested.Append(PointsOn(Sphere(0.5, { 0, 0, 0 }), n / 5, -1)); // a hollow ball
+  const ImplicitShape ball = Sphere(1, { 0, 0, 0 });
+  OrientedPoints apart = PointsOn(ball, n / 2, 1, choice);
+  apart.Append(PointsOn(Sphere(1, { 3, 0, 0 }), n / 2, 1, choice)); // the gap is one radius
+  OrientedPoints nested = PointsOn(ball, n * 4 / 5, 1, choice);
+  nested.Append(PointsOn(Sphere(0.5, { 0, 0, 0 }), n / 5, -1, choice)); // a hollow ball
   return {
-    { "sphere", PointsOn(Sphere(1, { 0, 0, 0 }), n), 1, 0 },
-    { "torus", PointsOn(Torus(1, 0.4), n), 1, 1 },
-    { "double torus", PointsOn(DoubleTorus(std::sqrt(0.03)), n), 1, 2 },
+    { "sphere", PointsOn(ball, n, 1, choice), 1, 0 },
+    { "torus", PointsOn(Torus(1, 0.4), n, 1, choice), 1, 1 },
+    { "double torus", PointsOn(DoubleTorus(std::sqrt(0.03)), n, 1, choice), 1, 2 },
     { "two spheres", apart, 2, 0 },
     { "nested spheres", nested, 2, 0 },
   };
@@ -287,8 +346,8 @@ inline OrientedPoints PointsOn(
     {
       const double t = i * dt, r = curve.Radius(t), s = curve.Slope(t), v = speed(t);
       const double c = std::cos(t), d = std::sin(t);
-      cloud.Add({ centreX + r * c, centreY + r * d, 0 },
-        { (r * c + s * d) / v, (r * d - s * c) / v, 0 });
+      cloud.Add(
+        { centreX + r * c, centreY + r * d, 0 }, { (r * c + s * d) / v, (r * d - s * c) / v, 0 });
     }
     length += speed((i + 0.5) * dt) * dt;
   }

@@ -55,8 +55,8 @@ void TestAbort(Checks& checks, double share)
   checks.That(ipiatest::OutputsAreEmpty(fitter), what + ": all outputs are empty");
   messages->CheckSilence(checks, what);
   // One more report may come: that of the end, or of the iteration that was under way.
-  const auto late = std::count_if(progress->Values.begin(), progress->Values.end(),
-    [&](double value) { return value >= share; });
+  const auto late = std::count_if(
+    progress->Values.begin(), progress->Values.end(), [&](double value) { return value >= share; });
   checks.AtMost(static_cast<double>(late), 2, what + ": reports after it");
 
   fitter->RemoveObserver(tag);

@@ -150,8 +150,8 @@ void TestDuplicates(Checks& checks)
   checks.AtMost(ipiatest::LargestDifference(once->GetOutput()->GetPointData()->GetScalars(),
                   twice->GetOutput()->GetPointData()->GetScalars()),
     1e-12, "duplicates: difference of f");
-  checks.AtMost(std::abs(twice->GetEnergy() / once->GetEnergy() - 2), 1e-9,
-    "duplicates: the energy doubles");
+  checks.AtMost(
+    std::abs(twice->GetEnergy() / once->GetEnergy() - 2), 1e-9, "duplicates: the energy doubles");
 }
 
 /// Normals that are not the active ones, by name.

@@ -39,7 +39,9 @@ vtkSmartPointer<vtkImageData> WithoutFarField(vtkImageData* lattice)
 
 void TestSurface(ipiatest::Checks& checks, const ipiatest::KnownSurface& surface, int constraint)
 {
-  auto fitter = ipiatest::NewClassicFitter(ipiatest::ToPolyData(surface.Cloud), 48);
+  // So fine that the band of data does not fill the shape.
+  const int size = surface.Genus == 2 ? 70 : 48;
+  auto fitter = ipiatest::NewClassicFitter(ipiatest::ToPolyData(surface.Cloud), size);
   fitter->SetNormalConstraint(constraint);
   fitter->SetMaximumNumberOfIterations(100);
   fitter->Update();
@@ -50,8 +52,8 @@ void TestSurface(ipiatest::Checks& checks, const ipiatest::KnownSurface& surface
     name + ": components with the far field");
   const int bare = CountComponents(WithoutFarField(lattice), fitter->GetOutput());
   checks.That(bare > surface.Components,
-    Text(name, ": more than ", surface.Components, " components without the far field (", bare,
-      ")"));
+    Text(
+      name, ": more than ", surface.Components, " components without the far field (", bare, ")"));
 }
 }
 

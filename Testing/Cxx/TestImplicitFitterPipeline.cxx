@@ -62,8 +62,8 @@ using ipiatest::SphereCloud;
 using ipiatest::Text;
 
 /// The surface is one closed sphere; the largest error of its vertices is below 1% of its radius.
-void CheckSphere(Checks& checks, vtkPolyData* surface, double radius, double centre,
-  const std::string& what)
+void CheckSphere(
+  Checks& checks, vtkPolyData* surface, double radius, double centre, const std::string& what)
 {
   checks.Equal(ipiatest::TopologyOf(surface), ipiatest::Topology{ 1, 0, 0, 0 }, what);
   double largest = 0;
@@ -141,9 +141,8 @@ void TestTimeSteps(Checks& checks)
   surface->SetInputConnection(fitter->GetOutputPort());
   surface->SetValue(0, 0.0);
   vtkNew<ipiatest::MessageObserver> messages;
-  for (vtkAlgorithm* algorithm :
-    { static_cast<vtkAlgorithm*>(source), static_cast<vtkAlgorithm*>(fitter),
-      static_cast<vtkAlgorithm*>(surface) })
+  for (vtkAlgorithm* algorithm : { static_cast<vtkAlgorithm*>(source),
+         static_cast<vtkAlgorithm*>(fitter), static_cast<vtkAlgorithm*>(surface) })
   {
     messages->Watch(algorithm);
   }
@@ -278,20 +277,20 @@ void TestPortsAlone(Checks& checks)
   all->Update();
   auto points = NewClassicFitter(cloud);
   points->Update(1);
-  checks.That(ipiatest::SameArray(
-                ipiatest::FittedPoints(points)->GetPointData()->GetArray("Residual"),
-                ipiatest::FittedPoints(all)->GetPointData()->GetArray("Residual")),
+  checks.That(
+    ipiatest::SameArray(ipiatest::FittedPoints(points)->GetPointData()->GetArray("Residual"),
+      ipiatest::FittedPoints(all)->GetPointData()->GetArray("Residual")),
     "port 1 alone gives the fitted points");
   auto lattice = NewClassicFitter(cloud);
   lattice->Update(2);
-  checks.That(
-    ipiatest::SameImage(ipiatest::ControlLattice(lattice), ipiatest::ControlLattice(all)),
+  checks.That(ipiatest::SameImage(ipiatest::ControlLattice(lattice), ipiatest::ControlLattice(all)),
     "port 2 alone gives the control lattice");
   lattice->Update(0);
   checks.That(ipiatest::SameOutputs(lattice, all), "port 0 after port 2 is the whole image");
 }
 
-/// Another port brought up to date with fewer or more samples than the image had at its last update.
+/// Another port brought up to date with fewer or more samples than the image had at its last
+/// update.
 void TestPortsAfterResampling(Checks& checks)
 {
   for (int port : { 1, 2 })

@@ -24,7 +24,9 @@ using ipiatest::ToPolyData;
 using Setup = std::function<void(vtkIPIAImplicitFitter*)>;
 
 /// Sets nothing.
-void NoSetup(vtkIPIAImplicitFitter*) {}
+void NoSetup(vtkIPIAImplicitFitter*)
+{
+}
 
 void ChooseWeights(vtkIPIAImplicitFitter* fitter)
 {
@@ -126,9 +128,7 @@ void TestWrongComponentCount(Checks& checks)
   cloud->GetPointData()->AddArray(pairs);
   CheckRefused(checks, "normals of two components", cloud, "has 2 components",
     [](vtkIPIAImplicitFitter* fitter)
-    {
-      fitter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Pairs");
-    });
+    { fitter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Pairs"); });
 }
 
 void TestTooFewNormals(Checks& checks)
@@ -154,8 +154,8 @@ void TestWeights(Checks& checks)
   weights->SetNumberOfTuples(cloud->GetNumberOfPoints());
   weights->Fill(1);
   cloud->GetPointData()->AddArray(weights);
-  CheckRefused(checks, "weights of two components", cloud, "row weights has 2 components",
-    ChooseWeights);
+  CheckRefused(
+    checks, "weights of two components", cloud, "row weights has 2 components", ChooseWeights);
 
   auto few = SphereCloud();
   vtkNew<vtkDoubleArray> tooFew;
@@ -276,7 +276,8 @@ void TestBlockWithoutNormals(Checks& checks)
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, SphereCloud());
   blocks->SetBlock(1, bare);
-  CheckRefused(checks, "block without normals", blocks, "Block 1 of the input has no point normals");
+  CheckRefused(
+    checks, "block without normals", blocks, "Block 1 of the input has no point normals");
 }
 
 void TestBlockWithoutWeights(Checks& checks)

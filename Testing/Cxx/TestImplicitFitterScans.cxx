@@ -26,8 +26,8 @@ int TestImplicitFitterScans(int argc, char* argv[])
       auto surface = ipiatest::ZeroSurface(fitter);
       checks.Equal(ipiatest::CountComponents(surface), 1,
         ipiatest::Text(name, ", constraint ", constraint, ": components"));
-      std::cout << name << ", constraint " << constraint << ": "
-                << ipiatest::TopologyOf(surface) << "\n";
+      std::cout << name << ", constraint " << constraint << ": " << ipiatest::TopologyOf(surface)
+                << "\n";
     }
   }
   return checks.Result();

@@ -34,8 +34,8 @@ void CheckWarned(Checks& checks, const std::string& what, vtkPolyData* cloud,
   checks.Equal(
     ipiatest::FittedPoints(fitter)->GetNumberOfPoints(), fitted, what + ": fitted points");
   checks.That(ipiatest::OutputsAreSound(fitter), what + ": all outputs are finite");
-  checks.Equal(ipiatest::TopologyOf(ipiatest::ZeroSurface(fitter)),
-    ipiatest::Topology{ 1, 0, 0, 0 }, what);
+  checks.Equal(
+    ipiatest::TopologyOf(ipiatest::ZeroSurface(fitter)), ipiatest::Topology{ 1, 0, 0, 0 }, what);
   fitter->SetSampleDimensions(20, 20, 20);
   fitter->Update();
   messages->CheckSilence(checks, what + ", sampled again");
@@ -84,8 +84,7 @@ void TestWeights(Checks& checks)
   cloud->GetPointData()->AddArray(weights);
   CheckWarned(checks, "NaN, negative and infinite weights", cloud,
     "3 point(s) with a negative or non-finite weight", 597,
-    [](vtkIPIAImplicitFitter* fitter)
-    {
+    [](vtkIPIAImplicitFitter* fitter) {
       fitter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Weight");
     });
 }

@@ -12,6 +12,7 @@
 #include "vtkIPIAImplicitFunction.h"
 #include "vtkImageBSplineInterpolator.h"
 #include "vtkMath.h"
+#include "vtkMinimalStandardRandomSequence.h"
 #include "vtkSampleFunction.h"
 #include "vtkSphereSource.h"
 #include "vtkTestUtilities.h"
@@ -68,11 +69,13 @@ double FarField(vtkIPIAImplicitFitter* fitter, ipiatest::Vector3 x)
   const int* n = lattice->GetDimensions();
   for (int a = 0; a < 3; ++a)
   {
-    const double u = (x[static_cast<std::size_t>(a)] - lattice->GetOrigin()[a]) /
-      lattice->GetSpacing()[a];
+    const double u =
+      (x[static_cast<std::size_t>(a)] - lattice->GetOrigin()[a]) / lattice->GetSpacing()[a];
     cell[a] = n[a] == 1 ? 0 : std::min(std::max(static_cast<int>(std::floor(u)), 1), n[a] - 3);
   }
-  return lattice->GetCellData()->GetArray("FarField")->GetComponent(lattice->ComputeCellId(cell), 0);
+  return lattice->GetCellData()
+    ->GetArray("FarField")
+    ->GetComponent(lattice->ComputeCellId(cell), 0);
 }
 
 void CheckRefusedLattice(Checks& checks, vtkImageData* lattice, const std::string& phrase)
@@ -147,12 +150,11 @@ void TestSamples(Checks& checks, bool planar)
     image->GetPoint(i, x.data());
     function->EvaluateGradient(x.data(), g.data());
     scale = std::max(scale, std::abs(f->GetComponent(i, 0)));
-    value = std::max(
-      value, std::abs(f->GetComponent(i, 0) - function->EvaluateFunction(x.data())));
+    value = std::max(value, std::abs(f->GetComponent(i, 0) - function->EvaluateFunction(x.data())));
     for (int a = 0; a < 3; ++a)
     {
-      slope = std::max(
-        slope, std::abs(gradient->GetComponent(i, a) - g[static_cast<std::size_t>(a)]));
+      slope =
+        std::max(slope, std::abs(gradient->GetComponent(i, a) - g[static_cast<std::size_t>(a)]));
     }
     far += FarField(fitter, x) != 0;
   }
@@ -181,8 +183,8 @@ void TestGradient(Checks& checks, bool planar)
       after[a] += step;
       if (FarField(fitter, before) == 0 && FarField(fitter, after) == 0)
       {
-        const double difference = (function->EvaluateFunction(after.data()) -
-                                    function->EvaluateFunction(before.data())) /
+        const double difference =
+          (function->EvaluateFunction(after.data()) - function->EvaluateFunction(before.data())) /
           (2 * step);
         largest = std::max(largest, std::abs(difference - g[a]));
         ++compared;
@@ -326,8 +328,8 @@ void TestFilters(Checks& checks)
   cut->Update();
   const double* bounds = cut->GetOutput()->GetBounds();
   checks.That(cut->GetOutput()->GetNumberOfCells() > 0, "the cut is not empty");
-  checks.AtMost(std::max(std::abs(bounds[0] - 0.5), std::abs(bounds[1] - 0.5)), 0.01,
-    "the plane of the cut");
+  checks.AtMost(
+    std::max(std::abs(bounds[0] - 0.5), std::abs(bounds[1] - 0.5)), 0.01, "the plane of the cut");
   checks.AtMost(std::abs(bounds[3] - std::sqrt(0.75)), 0.01, "the radius of the cut");
 
   vtkNew<vtkSampleFunction> sample;

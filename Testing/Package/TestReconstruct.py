@@ -147,6 +147,8 @@ class TestReconstruct(unittest.TestCase):
         count = len(self.points)
         table = np.hstack((self.points, intensity, colours))
         self.assert_reads(self.file("a.pts", table, count=count), False)
+        table = np.hstack((self.points, self.normals, colours))
+        self.assert_reads(self.file("b.xyz", table), True)
 
     def test_points_without_normals(self):
         result = self.run_script(self.file("a.xyz", self.points), "--no-picture")

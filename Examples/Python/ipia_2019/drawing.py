@@ -22,6 +22,7 @@ TITLE_HEIGHT = 32  # pixels
 MARGIN = 1.06
 CAMERA_DISTANCE = 10.0
 LINE_WIDTH = 2
+BEHIND = (2, 20)  # polygon offset of surfaces: factor and units
 
 
 @dataclass(frozen=True)
@@ -105,9 +106,11 @@ def curve_actor(contour, colour=RED):
 def surface_actor(contour, colour=BONE):
     """A surface, a little behind where it is so that points on it show."""
     actor = _actor(contour, colour)
+    if colour == WHITE:
+        actor.GetProperty().LightingOff()
     mapper = actor.GetMapper()
     mapper.SetResolveCoincidentTopologyToPolygonOffset()
-    mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(1, 1)
+    mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(*BEHIND)
     return actor
 
 

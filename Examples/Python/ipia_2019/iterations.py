@@ -3,7 +3,6 @@
 
 from .drawing import BLUE, PLANAR_VIEW, RED, Sheet, View, curve_actor, points_actor, surface_actor
 from .fitting import fit
-from .models import MODELS
 
 ITERATIONS = (1, 5, 10, 15)
 CURVE_TILE = (300, 300)
@@ -36,7 +35,7 @@ def _sheet(lab, names, tile_size, view, actors):
         for column, count in enumerate(ITERATIONS):
             # f >= 0 after one iteration with outward offsets; see FIRST_ITERATION_NOTE.
             made = fit(cloud, settings.but(iterations=count, two_sided=count == 1))
-            label = f"{MODELS[name].title}, iteration {count}"
+            label = f"{lab.library.title(name)}, iteration {count}"
             lab.record(label, made)
             sheet.tile(row, column, label + (" (two-sided)" if count == 1 else ""),
                        actors(cloud, made.contour), view)

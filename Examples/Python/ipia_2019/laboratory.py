@@ -49,3 +49,8 @@ class Laboratory:
 
     def note(self, text):
         self.notes.append(text)
+
+    def note_on_meshes(self, text):
+        """A note that is true of the meshes only, not of what --quick takes for them."""
+        if not self.library.quick:
+            self.notes.append(text)

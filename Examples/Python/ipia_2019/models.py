@@ -28,6 +28,7 @@ class Model:
     planar: bool = False
     mesh: str = ""
     open_at_domain: bool = False
+    remark: str = ""
 
 
 ANALYTIC = {
@@ -49,11 +50,14 @@ MODELS = {model.name: model for model in (
     Model("Gyroid", "analytic gyroid", 36627, 50, 4.8708e-6, 34.26, open_at_domain=True),
     Model("Elephant", "elephant", 52100, 50, 9.6839e-4, 44.55, mesh="refined_elephant"),
     Model("Bunny", "bunny", 35947, 70, 9.5983e-2, 88.24, mesh="bunny00"),
-    Model("Fertility", "camel, for fertility", 241607, 70, 9.5989e-5, 902.35, mesh="camel"),
+    Model("Fertility", "camel, for fertility", 241607, 70, 9.5989e-5, 902.35, mesh="camel",
+          remark="the gap between the camel's lips is a fifth of a knot spacing wide; of two "
+                 "components one is what is left of it, a bubble inside the head"),
     Model("Armadillo", "armadillo", 51892, 190, 1.9831e-2, 2732.32, mesh="armadillo"),
     Model("Buddha", "temple lion, for Buddha", 80000, 150, 7.4594e-2, 1835.73,
           mesh="ChineseDragon-10kv"),
-    Model("BU", "diplodocus, for BU", 70000, 160, 1.1899e-3, 2028.01, mesh="diplodocus"),
+    Model("BU", "mannequin, for BU", 70000, 160, 1.1899e-3, 2028.01, mesh="mannequin-devil",
+          remark="the mesh is open at the neck; the cut there is the edge of the far field"),
 )}
 
 # Half the longest side of a normalised model: the domain of a surface that ends at its box.
@@ -65,7 +69,7 @@ class ModelLibrary:
 
     def __init__(self, find_meshes, quick=False):
         self._find_meshes = find_meshes
-        self._quick = quick
+        self.quick = quick
         self._clouds = {}
 
     def cloud(self, name):
@@ -73,15 +77,25 @@ class ModelLibrary:
             self._clouds[name] = self._make(MODELS[name])
         return self._clouds[name]
 
+    def title(self, name):
+        """What the points are, for pictures and table."""
+        model = MODELS[name]
+        return f"double torus for {name}" if self.quick and model.mesh else model.title
+
+    def source(self, name):
+        """The title with the mesh that was read, if any."""
+        mesh = "" if self.quick else MODELS[name].mesh
+        return f"{self.title(name)} ({mesh}.off)" if mesh else self.title(name)
+
     def settings(self, name):
         model = MODELS[name]
-        grid = min(model.grid, QUICK_GRID) if self._quick else model.grid
+        grid = min(model.grid, QUICK_GRID) if self.quick else model.grid
         settings = Settings(grid=grid, planar=model.planar)
         return settings.but(half_side=MODEL_HALF_SIDE) if model.open_at_domain else settings
 
     def grid(self, size):
         """A grid size that a figure asks for, as --quick allows it."""
-        return min(size, QUICK_GRID) if self._quick else size
+        return min(size, QUICK_GRID) if self.quick else size
 
     @staticmethod
     def random(purpose):
@@ -92,9 +106,9 @@ class ModelLibrary:
         if model.name in ANALYTIC:
             return ANALYTIC[model.name](model.count)
         random = self.random(model.name)
-        count = min(model.count, QUICK_POINTS) if self._quick else model.count
+        count = min(model.count, QUICK_POINTS) if self.quick else model.count
         if model.name == "Gyroid":
             return surfaces.gyroid(count, random)
-        if self._quick:
-            return surfaces.double_torus(count // 2)
+        if self.quick:
+            return self.cloud("Double-torus")
         return meshes.mesh_cloud(self._find_meshes() / f"{model.mesh}.off", count, random)

@@ -10,7 +10,6 @@ import numpy as np
 from .drawing import BLUE, GREEN, MAGENTA, Sheet, curve_actor, points_actor
 from .fitting import ITERATIONS, fit
 from .iterations import ITERATIONS as SHOWN_ITERATIONS
-from .models import MODELS
 
 TILE_SIZE = (300, 200)
 POINT_SIZE = 3
@@ -42,19 +41,19 @@ def figure_3(lab):
 def _random_row(lab, sheet):
     cloud = lab.library.cloud("Dolphin")
     layers = ((-LAYER_DISTANCE, -RANDOM_VALUE), (LAYER_DISTANCE, RANDOM_VALUE))
-    sheet.tile(0, 0, f"(a) {MODELS['Dolphin'].title}", _layer_actors(cloud, layers))
+    sheet.tile(0, 0, f"(a) {lab.library.title('Dolphin')}", _layer_actors(cloud, layers))
     random = lab.library.random("offset values")
     for column, deviation in enumerate(DEVIATIONS):
         positions, values = _extra_rows(cloud, layers)
         values = values + random.uniform(-deviation, deviation, len(values))
-        _fit_tile(lab, sheet, (0, column + 1), f"({'bcde'[column]}) \u03c3 = {deviation:g}",
+        _fit_tile(lab, sheet, (0, column + 1), f"({'bcde'[column]}) sigma = {deviation:g}",
                   "Dolphin", (positions, values))
 
 
 def _reversed_row(lab, sheet):
     for column, (name, letters) in enumerate((("Butterfly", "fg"), ("Dolphin", "hi"))):
         cloud = lab.library.cloud(name)
-        sheet.tile(1, 2 * column, f"({letters[0]}) {MODELS[name].title}",
+        sheet.tile(1, 2 * column, f"({letters[0]}) {lab.library.title(name)}",
                    _layer_actors(cloud, REVERSED_LAYERS))
         _fit_tile(lab, sheet, (1, 2 * column + 1), f"({letters[1]}) reversed values", name,
                   _extra_rows(cloud, REVERSED_LAYERS))
@@ -70,7 +69,7 @@ def _fit_tile(lab, sheet, place, label, name, extra_rows):
     cloud = lab.library.cloud(name)
     settings = lab.library.settings(name).but(
         iterations=FEW_ITERATIONS, offset_value=float(np.abs(extra_rows[1]).min()))
-    made = lab.record(f"{label}, {MODELS[name].title}", fit(cloud, settings, extra_rows))
+    made = lab.record(f"{label}, {lab.library.title(name)}", fit(cloud, settings, extra_rows))
     sheet.tile(*place, label, [points_actor(cloud.points, BLUE, POINT_SIZE_UNDER_CURVE),
                                curve_actor(made.contour)])
     _note_more_iterations(lab, label, fit(cloud, settings.but(iterations=ITERATIONS), extra_rows))

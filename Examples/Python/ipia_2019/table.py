@@ -22,7 +22,9 @@ def _row(lab, model):
     made = lab.standard_fit(model.name)
     settings = lab.library.settings(model.name)
     _note_far_field_points(lab, model, made)
-    return (model.name, model.source, str(len(lab.library.cloud(model.name))),
+    if model.remark:
+        lab.note_on_meshes(f"{model.name}: {model.remark}")
+    return (model.name, lab.library.source(model.name), str(len(lab.library.cloud(model.name))),
             f"{settings.grid}^{2 if model.planar else 3}", str(ITERATIONS), str(made.components),
             f"{model.paper_error:.3g}", f"{made.max_error:.3g}",
             f"{model.paper_seconds:g}", f"{made.seconds:.2f}")
