@@ -686,8 +686,7 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   using ipia::triple;
   const auto bounds = [](const double* b)
   { return text("(", b[0], ", ", b[1], ", ", b[2], ", ", b[3], ", ", b[4], ", ", b[5], ")"); };
-  os << indent << "ModelBounds: " << bounds(this->ModelBounds) << "
-";
+  os << indent << "ModelBounds: " << bounds(this->ModelBounds) << "\n";
   os << indent << "Padding: " << this->Padding << "\n";
   os << indent << "GridSize: " << triple(this->GridSize) << "\n";
   os << indent << "SampleDimensions: " << triple(this->SampleDimensions) << "\n";
