@@ -326,7 +326,6 @@ void TestWhatRefits(Checks& checks)
     { "SampleDimensions", [](auto* f) { f->SetSampleDimensions(20, 30, 40); } },
     { "one automatic sample dimension", [](auto* f) { f->SetSampleDimensions(0, 30, 40); } },
     { "GenerateGradient", [](auto* f) { f->GenerateGradientOn(); } },
-    { "GenerateSupport", [](auto* f) { f->GenerateSupportOn(); } },
     { "OutputScalarType", [](auto* f) { f->SetOutputScalarTypeToDouble(); } },
     { "an extent",
       [](auto* f)
