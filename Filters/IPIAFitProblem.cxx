@@ -26,6 +26,11 @@ constexpr double MostAutomaticSamples = 268435456; // 2^28
 constexpr double MemoryShare = 0.9;
 /// Bytes that the fit needs per coefficient and per row, all its arrays together.
 constexpr double BytesPerCoefficient = 96, BytesPerRow = 160;
+/// And in bricks: per brick that is stored, and per brick of the whole lattice.
+constexpr double BytesPerBrick = 2048, BytesPerAbsentBrick = 16;
+/// Bricks around a brick with data, and layers of them on both sides of a surface that crosses the
+/// lattice twice along every axis.
+constexpr double BricksAroundOne = 27, LayersOfBricks = 6;
 
 double memoryOfMachine()
 {
@@ -72,6 +77,13 @@ void FitProblem::Prepare(const FitParameters& parameters)
     const int none[6] = { 0, -1, 0, -1, 0, -1 };
     std::copy_n(none, 6, this->WholeExtent);
   }
+}
+
+bool FitProblem::staysInBricks(const FitParameters& parameters) const
+{
+  const auto& samples = parameters.SampleDimensions;
+  return parameters.FunctionOnly && !parameters.isClassic() && this->Dimension == 3 &&
+    std::all_of(samples.begin(), samples.end(), [](int n) { return n == 0; });
 }
 
 void FitProblem::CheckCombination(const FitParameters& parameters)
@@ -248,8 +260,20 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
   const double arrays =
     1 + (parameters.GenerateGradient ? 4 : 0) + (parameters.GenerateSupport ? 1 : 0);
   const double rows = 3. * static_cast<double>(this->Cloud.Positions.size());
-  const double needed =
-    coefficients * BytesPerCoefficient + rows * BytesPerRow + samples * arrays * scalar;
+  double needed = rows * BytesPerRow;
+  if (this->staysInBricks(parameters))
+  {
+    const double bricks[3] = { this->GridSize[0] / 4. + 1, this->GridSize[1] / 4. + 1,
+      this->GridSize[2] / 4. + 1 };
+    const double all = bricks[0] * bricks[1] * bricks[2];
+    const double sides = bricks[0] * bricks[1] + bricks[1] * bricks[2] + bricks[2] * bricks[0];
+    needed += all * BytesPerAbsentBrick +
+      BytesPerBrick * std::min({ all, BricksAroundOne * rows, LayersOfBricks * sides });
+  }
+  else
+  {
+    needed += coefficients * BytesPerCoefficient + samples * arrays * scalar;
+  }
   const double available = memoryOfMachine();
   if (needed > MemoryShare * available)
   {

@@ -34,6 +34,7 @@ struct FitParameters
   bool GenerateGradient;
   bool GenerateSupport;
   int OutputScalarType;
+  bool FunctionOnly; ///< nothing but the function is wanted, no image and no lattice
 
   /// The papers' method on one level, with offset rows; otherwise the fit is hierarchical.
   bool isClassic() const;
@@ -60,6 +61,10 @@ public:
 
   /// Derives all from the cloud, which has been gathered.
   void Prepare(const FitParameters& parameters);
+
+  /// Whether neither the finest lattice nor an image of f is ever held: the function of a hierarchy
+  /// in 3-D, where that alone is wanted and nothing is said about samples.
+  bool staysInBricks(const FitParameters& parameters) const;
 
 private:
   void CheckCombination(const FitParameters& parameters);

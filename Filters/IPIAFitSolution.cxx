@@ -125,8 +125,8 @@ void solveClassic(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
   options.FarField.Magnitude =
     parameters.OffsetValue > 0 ? parameters.OffsetValue : solution.OffsetDistance;
 
-  solution.Result = fitImplicit<Dim>(lattice, input, options, progress);
-  const SolverResult& solved = solution.Result.Solver;
+  FitResult<Dim> fitted = fitImplicit<Dim>(lattice, input, options, progress);
+  const SolverResult& solved = fitted.Solver;
   solution.Aborted = solved.Status == SolverStatus::Aborted;
   if (solved.Status == SolverStatus::Diverged)
   {
@@ -134,7 +134,7 @@ void solveClassic(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
       ": the energy rose in iteration ", solved.NumberOfIterations,
       ". Reduce StepSize, or leave it 0 for 2 / max_i sum_k w_k B_i(x_k).");
   }
-  const int mixed = solution.Result.Function.farField().NumberOfMixedRegions;
+  const int mixed = fitted.Function.farField().NumberOfMixedRegions;
   if (mixed > 0)
   {
     solution.Warning = text(mixed,
@@ -142,6 +142,12 @@ void solveClassic(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
       "wide "
       "holes; f takes the sign of the larger share of the border.");
   }
+  solution.Function = std::make_shared<const ImplicitSpline<Dim>>(std::move(fitted.Function));
+  solution.Support = std::move(fitted.Support);
+  solution.Solver = std::move(fitted.Solver);
+  solution.AverageError = fitted.AverageError;
+  solution.MaximumError = fitted.MaximumError;
+  solution.Oscillation = fitted.Oscillation;
 }
 
 /// The offset rows of the classic method and the extra rows as rows of the hierarchy.
@@ -196,7 +202,8 @@ HermiteInput<Dim> hermiteInput(const Lattice<Dim>& lattice, const FitInput<Dim>&
 
 template <int Dim>
 void solveHierarchical(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
-  const FitParameters& parameters, const ProgressCallback& progress, FitSolution<Dim>& solution)
+  const FitParameters& parameters, bool inBricks, const ProgressCallback& progress,
+  FitSolution<Dim>& solution)
 {
   HierarchicalOptions options;
   options.NumberOfLevels = parameters.NumberOfLevels;
@@ -224,21 +231,26 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
   {
     return;
   }
-  solution.NumberOfLevels = static_cast<int>(fitted.Levels.size());
+  solution.Bricks = fitted.Function;
+  solution.NumberOfLevels = static_cast<int>(fitted.Reports.size());
   solution.Noise = fitted.Noise;
   solution.SmoothingLength = fitted.SmoothingLength;
   const LevelReport& finest = fitted.Reports.back();
-  SolverResult solved;
-  solved.NumberOfIterations = finest.NumberOfIterations;
-  solved.Energy = finest.Energy;
-  solved.ResidualHistory = finest.ResidualHistory;
-  Vector support;
+  solution.Solver.NumberOfIterations = finest.NumberOfIterations;
+  solution.Solver.Energy = finest.Energy;
+  solution.Solver.ResidualHistory = finest.ResidualHistory;
+  solution.AverageError = finest.AverageError;
+  solution.MaximumError = finest.MaximumError;
+  if (inBricks)
+  {
+    return;
+  }
+  solution.Function =
+    std::make_shared<const ImplicitSpline<Dim>>(lattice, solution.Bricks->coefficients());
   if (parameters.GenerateSupport)
   {
-    support = scaledSupport(lattice, input.Positions, options.Threads);
+    solution.Support = scaledSupport(lattice, input.Positions, options.Threads);
   }
-  solution.Result = summarize(ImplicitSpline<Dim>(lattice, assembleCoefficients(fitted.Levels)),
-    solved, std::move(support), input.Positions, options.Threads);
 }
 }
 
@@ -261,7 +273,8 @@ FitSolution<Dim> solve(
   }
   else
   {
-    solveHierarchical(lattice, input, parameters, progress, solution);
+    solveHierarchical(
+      lattice, input, parameters, problem.staysInBricks(parameters), progress, solution);
   }
   return solution;
 }

@@ -6,9 +6,10 @@
 #ifndef IPIAFitSolution_h
 #define IPIAFitSolution_h
 
+#include "Core/BrickSpline.h"
 #include "Core/ImplicitFit.h"
-#include "IPIAControlLattice.h"
 #include "IPIAFitProblem.h"
+#include "IPIAPlacedSpline.h"
 
 namespace ipia
 {
@@ -16,7 +17,13 @@ template <int Dim>
 struct FitSolution
 {
   Placement<Dim> Place;
-  FitResult<Dim> Result;
+  std::shared_ptr<const ImplicitSpline<Dim>> Function; ///< nullptr if the fit is to stay in bricks
+  std::shared_ptr<const BrickSpline<Dim>> Bricks;      ///< of the hierarchy; nullptr without
+  Vector Support; ///< as coefficients, see scaledSupport(); empty where it was not asked for
+  SolverResult Solver;
+  double AverageError = 0;
+  double MaximumError = 0;
+  double Oscillation = 0;     ///< of a single level with offset rows, 0 otherwise
   double OffsetDistance = 0;  ///< of the offset rows, 0 without
   int NumberOfLevels = 1;     ///< of the hierarchy
   double Noise = 0;           ///< in knot spacings of the level it was measured on
@@ -26,6 +33,12 @@ struct FitSolution
   bool Aborted = false;
 
   bool isValid() const { return this->Error.empty() && !this->Aborted; }
+
+  std::shared_ptr<const PlacedSpline> placed() const
+  {
+    return this->Function ? placedSpline<Dim>(this->Function, this->Place)
+                          : placedSpline<Dim>(this->Bricks, this->Place);
+  }
 };
 
 template <int Dim>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIPIAImplicitFitter.h"
 
+#include "Core/Parallel.h"
+#include "IPIABrickContour.h"
 #include "IPIAFitSolution.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFunction.h"
@@ -122,6 +124,7 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
   , GenerateGradient(false)
   , GenerateSupport(false)
   , OutputScalarType(VTK_FLOAT)
+  , FunctionOnly(false)
   , State(new Internals)
 {
   vtkMath::UninitializeBounds(this->ModelBounds);
@@ -160,6 +163,7 @@ ipia::FitParameters vtkIPIAImplicitFitter::Parameters() const
   p.GenerateGradient = this->GenerateGradient;
   p.GenerateSupport = this->GenerateSupport;
   p.OutputScalarType = this->OutputScalarType;
+  p.FunctionOnly = this->FunctionOnly;
   return p;
 }
 
@@ -234,7 +238,7 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
 {
   vtkDataObject* points = vtkDataObject::GetData(input[0]);
   vtkPolyData* extraRows = vtkPolyData::GetData(input[1]);
-  std::vector<vtkMTimeType> identity{ this->GetMTime() };
+  std::vector<vtkMTimeType> identity{ this->GetMTime(), this->FunctionOnly };
   appendIdentity(points, identity);
   appendIdentity(extraRows, identity);
   if (this->State->Current && identity == this->State->ProblemIdentity)
@@ -378,18 +382,21 @@ bool vtkIPIAImplicitFitter::FitInDimension()
   {
     vtkWarningMacro(<< slot->Warning);
   }
-  const ipia::FitResult<Dim>& result = slot->Result;
-  this->NumberOfIterationsUsed = result.Solver.NumberOfIterations;
-  this->StepSizeUsed = result.Solver.StepSize;
-  this->Energy = result.Solver.Energy;
-  this->AverageError = result.AverageError;
-  this->MaximumError = result.MaximumError;
-  this->Oscillation = result.Oscillation;
+  this->NumberOfIterationsUsed = slot->Solver.NumberOfIterations;
+  this->StepSizeUsed = slot->Solver.StepSize;
+  this->Energy = slot->Solver.Energy;
+  this->AverageError = slot->AverageError;
+  this->MaximumError = slot->MaximumError;
+  this->Oscillation = slot->Oscillation;
   this->OffsetDistanceUsed = slot->OffsetDistance;
   this->NumberOfLevelsUsed = slot->NumberOfLevels;
   this->NoiseFound = slot->Noise;
   this->SmoothingLengthUsed = slot->SmoothingLength;
-  ipia::toControlLattice(result.Function, slot->Place, this->State->ControlLattice);
+  this->State->Function->SetSpline(slot->placed());
+  if (slot->Function)
+  {
+    ipia::toControlLattice(*slot->Function, slot->Place, this->State->ControlLattice);
+  }
   return true;
 }
 
@@ -399,7 +406,7 @@ bool vtkIPIAImplicitFitter::Fit()
   const ipia::FitProblem& problem = *state.Current;
   // What the fit depends on, to reuse it when only the samples change.
   std::vector<vtkMTimeType> identity = state.ProblemIdentity;
-  identity.front() = 0; // the filter's own time covers more than the fit's parameters
+  identity[0] = 0; // the filter's own time covers more than the fit's parameters
   for (vtkDataArray* array : problem.Cloud.ChosenArrays)
   {
     appendArrayIdentity(array, identity);
@@ -407,9 +414,10 @@ bool vtkIPIAImplicitFitter::Fit()
   std::vector<double> parameters{ this->OffsetDistance, this->OffsetValue,
     this->InwardOffsetDistance, this->InwardOffsetValue, this->FairingWeight, this->Tolerance,
     this->StepSize };
-  for (int value : { this->NormalConstraint, this->FairingOrder, this->Solver, this->NumberOfLevels,
-         this->MaximumNumberOfIterations, this->StoppingRule,
-         static_cast<int>(this->GenerateSupport), problem.FlatAxis })
+  for (int value :
+    { this->NormalConstraint, this->FairingOrder, this->Solver, this->NumberOfLevels,
+      this->MaximumNumberOfIterations, this->StoppingRule, static_cast<int>(this->GenerateSupport),
+      problem.FlatAxis, static_cast<int>(problem.staysInBricks(this->Parameters())) })
   {
     parameters.push_back(value);
   }
@@ -456,7 +464,6 @@ bool vtkIPIAImplicitFitter::Fit()
     this->ModelBoundsUsed[2 * axis] = problem.Origin[axis];
     this->ModelBoundsUsed[2 * axis + 1] = problem.Upper[axis];
   }
-  state.Function->SetControlLattice(state.ControlLattice);
   state.FitIdentity = identity;
   state.FitParameters = parameters;
   return true;
@@ -513,7 +520,7 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
   };
 
   auto f = newArray("f", 1);
-  if (!sampleInto<Dim>(f.Get(), 0, fit.Result.Function, positions, -1, progress) || !finish())
+  if (!sampleInto<Dim>(f.Get(), 0, *fit.Function, positions, -1, progress) || !finish())
   {
     return false;
   }
@@ -525,7 +532,7 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
     for (int a = 0; a < Dim; ++a)
     {
       if (!sampleInto<Dim>(gradient.Get(), fit.Place.Axis[static_cast<std::size_t>(a)],
-            fit.Result.Function, positions, a, progress) ||
+            *fit.Function, positions, a, progress) ||
         !finish())
       {
         return false;
@@ -536,7 +543,7 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
   if (this->GenerateSupport)
   {
     auto support = newArray("Support", 1);
-    const ipia::ImplicitSpline<Dim> density(fit.Result.Function.lattice(), fit.Result.Support);
+    const ipia::ImplicitSpline<Dim> density(fit.Function->lattice(), fit.Support);
     if (!sampleInto<Dim>(support.Get(), 0, density, positions, -1, progress) || !finish())
     {
       return false;
@@ -567,17 +574,21 @@ void vtkIPIAImplicitFitter::WriteFittedPoints(vtkPolyData* output)
     from->SetId(i, cloud.Ids[k]);
     to->SetId(i, i);
     points->SetPoint(i, cloud.Source->GetPoint(cloud.Ids[k]));
-    this->State->WithFit(
-      [&](const auto& fit)
+  }
+  ipia::parallelChunks(n, ipia::resolveThreads(0),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
       {
-        const auto local = fit.Place.toLocal(cloud.Positions[k].data());
-        const double f = fit.Result.Function.value(local);
-        const double slope = fit.Result.Function.gradient(local).norm();
+        double g[3];
+        const double f = this->State->Function->EvaluateFunctionAndGradient(
+          cloud.Positions[static_cast<std::size_t>(i)].data(), g);
+        const double slope = vtkMath::Norm(g);
         residual->SetValue(i, f);
         // Where f is flat there is no distance to tell; f itself is the best guess.
         distance->SetValue(i, slope > 0 ? f / slope : f);
-      });
-  }
+      }
+    });
   output->SetPoints(points);
   output->GetPointData()->CopyAllOn();
   output->GetPointData()->CopyAllocate(cloud.Source->GetPointData(), n);
@@ -617,7 +628,7 @@ void vtkIPIAImplicitFitter::WriteResults(vtkFieldData* field) const
   this->State->WithFit(
     [&](const auto& fit)
     {
-      for (double r : fit.Result.Solver.ResidualHistory)
+      for (double r : fit.Solver.ResidualHistory)
       {
         history->InsertNextValue(r);
       }
@@ -653,6 +664,12 @@ int vtkIPIAImplicitFitter::RequestData(
     return 1;
   }
 
+  if (this->IsInBricks())
+  {
+    this->WriteResults(image->GetFieldData());
+    this->ReportProgress(1);
+    return 1;
+  }
   vtkInformation* imageInfo = output->GetInformationObject(0);
   int extent[6];
   std::copy_n(problem.WholeExtent, 6, extent);
@@ -678,6 +695,30 @@ int vtkIPIAImplicitFitter::RequestData(
   lattice->ShallowCopy(this->State->ControlLattice);
   this->ReportProgress(1);
   return 1;
+}
+
+void vtkIPIAImplicitFitter::UpdateFunctionOnly()
+{
+  this->FunctionOnly = true;
+  this->Update();
+  this->FunctionOnly = false;
+}
+
+bool vtkIPIAImplicitFitter::IsInBricks() const
+{
+  return this->State->Spatial && !this->State->Spatial->Function;
+}
+
+bool vtkIPIAImplicitFitter::ContourBricks(
+  int pointType, const std::function<bool(double)>& progress, vtkPolyData* surface) const
+{
+  const ipia::FitSolution<3>& fit = *this->State->Spatial;
+  return ipia::contourBricks(*fit.Bricks, fit.Place, pointType, progress, surface);
+}
+
+const std::vector<std::array<double, 3>>& vtkIPIAImplicitFitter::FittedPositions() const
+{
+  return this->State->Current->Cloud.Positions;
 }
 
 void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)

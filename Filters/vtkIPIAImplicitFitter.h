@@ -90,7 +90,10 @@
 #include "vtkFiltersIPIAModule.h" // for the export macro
 #include "vtkImageAlgorithm.h"
 
-#include <memory> // for std::unique_ptr
+#include <array>      // for std::array
+#include <functional> // for std::function
+#include <memory>     // for std::unique_ptr
+#include <vector>     // for std::vector
 
 class vtkFieldData;
 class vtkIPIAImplicitFunction;
@@ -338,8 +341,8 @@ public:
    * StepSizeUsed is 0 with ConjugateGradient. Energy is E = sum_k w_k r_k^2 over all rows;
    * AverageError and MaximumError are the mean of f^2 and the maximum of |f| at the points;
    * Oscillation is R(C), the sum over coefficients of the squared differences to their axis
-   * neighbours. OffsetDistanceUsed is the distance that was aimed at, before rows were drawn nearer
-   * to their points.
+   * neighbours, of a single level with offset rows; 0 otherwise. OffsetDistanceUsed is the distance
+   * that was aimed at, before rows were drawn nearer to their points.
    */
   vtkGetMacro(NumberOfIterationsUsed, int);
   vtkGetMacro(StepSizeUsed, double);
@@ -411,12 +414,21 @@ protected:
   double SmoothingLengthUsed;
   int GridSizeUsed[3];
   double ModelBoundsUsed[6];
+  bool FunctionOnly;
 
 private:
   vtkIPIAImplicitFitter(const vtkIPIAImplicitFitter&) = delete;
   void operator=(const vtkIPIAImplicitFitter&) = delete;
 
   class Internals;
+
+  // vtkIPIASurfaceReconstruction asks for the function alone and contours it in bricks if it is.
+  friend class vtkIPIASurfaceReconstruction;
+  void UpdateFunctionOnly();
+  bool IsInBricks() const;
+  bool ContourBricks(
+    int pointType, const std::function<bool(double)>& progress, vtkPolyData* surface) const;
+  const std::vector<std::array<double, 3>>& FittedPositions() const;
 
   ipia::FitParameters Parameters() const;
 

@@ -1,67 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIPIAImplicitFunction.h"
 
-#include "IPIAControlLattice.h"
+#include "IPIAPlacedSpline.h"
 
 #include "vtkObjectFactory.h"
 
 vtkStandardNewMacro(vtkIPIAImplicitFunction);
 
-/// A spline of either dimension, placed in space.
-class vtkIPIAImplicitFunction::Spline
+namespace
 {
-public:
-  virtual ~Spline() = default;
-  virtual double Value(const double x[3]) const = 0;
-  virtual double ValueAndGradient(const double x[3], double g[3]) const = 0;
-
-  /// nullptr with a message if the lattice is not of the right form.
-  static std::shared_ptr<const Spline> FromLattice(vtkImageData* lattice, std::string& message);
-
-private:
-  template <int Dim>
-  class OfDimension;
-};
-
+/// nullptr with a message if the lattice is not of the right form.
 template <int Dim>
-class vtkIPIAImplicitFunction::Spline::OfDimension : public Spline
+std::shared_ptr<const ipia::PlacedSpline> readLattice(vtkImageData* lattice, std::string& message)
 {
-public:
-  double Value(const double x[3]) const override
-  {
-    return this->Function->value(this->Place.toLocal(x));
-  }
-
-  double ValueAndGradient(const double x[3], double g[3]) const override
-  {
-    ipia::Point<Dim> gradient;
-    const double f = this->Function->valueAndGradient(this->Place.toLocal(x), gradient);
-    this->Place.toWorldVector(gradient, g);
-    return f;
-  }
-
-  std::unique_ptr<ipia::ImplicitSpline<Dim>> Function;
-  ipia::Placement<Dim> Place;
-};
-
-std::shared_ptr<const vtkIPIAImplicitFunction::Spline> vtkIPIAImplicitFunction::Spline::FromLattice(
-  vtkImageData* lattice, std::string& message)
-{
-  const auto read = [&](auto fit) -> std::shared_ptr<const Spline>
-  {
-    message = ipia::fromControlLattice(lattice, fit->Function, fit->Place);
-    return message.empty() ? fit : nullptr;
-  };
-  switch (ipia::dimensionOfControlLattice(lattice))
-  {
-    case 3:
-      return read(std::make_shared<OfDimension<3>>());
-    case 2:
-      return read(std::make_shared<OfDimension<2>>());
-    default:
-      message = "the control lattice extends along fewer than two axes";
-      return nullptr;
-  }
+  std::unique_ptr<ipia::ImplicitSpline<Dim>> spline;
+  ipia::Placement<Dim> place;
+  message = ipia::fromControlLattice(lattice, spline, place);
+  return message.empty()
+    ? ipia::placedSpline<Dim>(
+        std::shared_ptr<const ipia::ImplicitSpline<Dim>>(std::move(spline)), place)
+    : nullptr;
+}
 }
 
 vtkIPIAImplicitFunction::vtkIPIAImplicitFunction() = default;
@@ -69,17 +28,33 @@ vtkIPIAImplicitFunction::~vtkIPIAImplicitFunction() = default;
 
 void vtkIPIAImplicitFunction::SetControlLattice(vtkImageData* lattice)
 {
-  this->Fit.reset();
-  this->Modified();
+  std::shared_ptr<const ipia::PlacedSpline> spline;
   std::string message;
   if (lattice)
   {
-    this->Fit = Spline::FromLattice(lattice, message);
+    switch (ipia::dimensionOfControlLattice(lattice))
+    {
+      case 3:
+        spline = readLattice<3>(lattice, message);
+        break;
+      case 2:
+        spline = readLattice<2>(lattice, message);
+        break;
+      default:
+        message = "the control lattice extends along fewer than two axes";
+    }
   }
+  this->SetSpline(std::move(spline));
   if (!message.empty())
   {
     vtkErrorMacro(<< "The function was not taken over: " << message << ".");
   }
+}
+
+void vtkIPIAImplicitFunction::SetSpline(std::shared_ptr<const ipia::PlacedSpline> spline)
+{
+  this->Fit = std::move(spline);
+  this->Modified();
 }
 
 bool vtkIPIAImplicitFunction::HasControlLattice() const

@@ -39,6 +39,10 @@
 #include <memory> // for std::shared_ptr
 
 class vtkImageData;
+namespace ipia
+{
+class PlacedSpline;
+}
 
 class VTKFILTERSIPIA_EXPORT vtkIPIAImplicitFunction : public vtkImplicitFunction
 {
@@ -79,8 +83,11 @@ private:
   vtkIPIAImplicitFunction(const vtkIPIAImplicitFunction&) = delete;
   void operator=(const vtkIPIAImplicitFunction&) = delete;
 
-  class Spline;
-  std::shared_ptr<const Spline> Fit;
+  // The fitter shares its function instead of copying a lattice.
+  friend class vtkIPIAImplicitFitter;
+  void SetSpline(std::shared_ptr<const ipia::PlacedSpline> spline);
+
+  std::shared_ptr<const ipia::PlacedSpline> Fit;
 };
 
 #endif

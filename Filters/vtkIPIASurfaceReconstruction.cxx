@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIPIASurfaceReconstruction.h"
 
+#include "IPIABrickContour.h"
 #include "vtkIPIAImplicitFitter.h"
 #include "vtkIPIAImplicitFunction.h"
 
@@ -37,9 +38,6 @@ namespace
 {
 /// Share of the progress that the fit takes.
 constexpr double ProgressOfFit = 0.7;
-/// A Newton step goes no farther than this share of a sample spacing, and is not taken where f is
-/// flat.
-constexpr double LongestStep = 1. / 3, LeastSlope = 0.1;
 /// A component stays if it has this share of the data points that its size makes one expect.
 constexpr double LeastShareOfData = 0.02;
 /// Rounding to float shows beyond this share of the knot spacing.
@@ -105,12 +103,7 @@ void vtkIPIASurfaceReconstruction::ForwardEvent(vtkObject*, unsigned long event,
   if (event == vtkCommand::ProgressEvent)
   {
     this->UpdateProgress(ProgressOfFit * *static_cast<double*>(data));
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-    const bool aborted = this->CheckAbort();
-#else
-    const bool aborted = this->GetAbortExecute() != 0;
-#endif
-    this->Fitter->SetAbortExecute(aborted ? 1 : 0);
+    this->Fitter->SetAbortExecute(this->IsAborted() ? 1 : 0);
   }
   else if (this->HasObserver(event))
   {
@@ -147,79 +140,116 @@ int vtkIPIASurfaceReconstruction::RequestData(
   {
     this->Fitter->SetInputArrayToProcess(index, this->GetInputArrayInformation(index));
   }
-  this->Fitter->Update();
-  vtkImageData* sampled = this->Fitter->GetOutput();
-  const bool fitted = sampled->GetNumberOfPoints() > 0;
-  if (fitted)
+  this->Fitter->UpdateFunctionOnly();
+  bool done = this->Fitter->GetImplicitFunction()->HasControlLattice();
+  if (done)
   {
-    // Contour filters write float points: contour at the origin, and move in double.
-    double origin[3];
-    const double none[3] = { 0, 0, 0 };
-    sampled->GetOrigin(origin);
-    vtkNew<vtkImageData> image;
-    image->ShallowCopy(sampled);
-    image->SetOrigin(none);
-    vtkNew<vtkFlyingEdges3D> contour3D;
-    vtkNew<vtkFlyingEdges2D> contour2D;
-    vtkNew<vtkReverseSense> outwards;
-    vtkNew<vtkStripper> polylines;
-    if (sampled->GetDataDimension() == 3)
+    if (this->Fitter->IsInBricks())
     {
-      contour3D->SetInputData(image);
-      contour3D->SetValue(0, 0);
-      contour3D->ComputeNormalsOff();
-      contour3D->ComputeScalarsOff();
-      // Its triangles face towards smaller f.
-      outwards->SetInputConnection(contour3D->GetOutputPort());
-      outwards->Update();
-      surface->ShallowCopy(outwards->GetOutput());
+      done = this->Fitter->ContourBricks(
+        this->PointType(), [this](double share) { return this->ReportProgress(share); }, surface);
     }
     else
     {
-      contour2D->SetInputData(image);
-      contour2D->SetValue(0, 0);
-      contour2D->ComputeScalarsOff();
-      polylines->SetInputConnection(contour2D->GetOutputPort());
-      polylines->JoinContiguousSegmentsOn();
-      polylines->Update();
-      surface->ShallowCopy(polylines->GetOutput());
+      this->ContourImage(surface);
     }
-    surface->GetFieldData()->ShallowCopy(sampled->GetFieldData());
-    this->UpdateProgress((1 + ProgressOfFit) / 2);
-    this->MoveOntoZeroSet(surface, origin);
-    if (this->ComponentFilter)
-    {
-      this->LeaveOutComponents(
-        surface, vtkPolyData::SafeDownCast(this->Fitter->GetOutputDataObject(1)));
-    }
+    surface->GetFieldData()->ShallowCopy(this->Fitter->GetOutput()->GetFieldData());
+  }
+  if (done && this->ComponentFilter)
+  {
+    this->LeaveOutComponents(surface);
   }
   // Neither the input nor the samples are needed any more; the function and the figures stay.
-  this->Fitter->GetOutputDataObject(0)->Initialize();
-  this->UpdateProgress(1);
+  for (int port = 0; port < this->Fitter->GetNumberOfOutputPorts(); ++port)
+  {
+    this->Fitter->GetOutputDataObject(port)->Initialize();
+  }
+  if (!done || !this->ReportProgress(1))
+  {
+    surface->Initialize();
+  }
   return 1;
 }
 
-void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, const double origin[3])
+bool vtkIPIASurfaceReconstruction::ReportProgress(double shareOfContour)
 {
-  vtkPoints* before = surface->GetPoints();
-  const vtkIdType n = before->GetNumberOfPoints();
-  const double* sampleSpacing = this->Fitter->GetOutput()->GetSpacing();
-  const double* knotSpacing =
-    vtkImageData::SafeDownCast(this->Fitter->GetOutputDataObject(2))->GetSpacing();
-  double farthest = 0, h = VTK_DOUBLE_MAX, longest = VTK_DOUBLE_MAX;
+  this->UpdateProgress(ProgressOfFit + (1 - ProgressOfFit) * shareOfContour);
+  return !this->IsAborted();
+}
+
+bool vtkIPIASurfaceReconstruction::IsAborted()
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  return this->CheckAbort();
+#else
+  return this->GetAbortExecute() != 0;
+#endif
+}
+
+int vtkIPIASurfaceReconstruction::PointType() const
+{
+  double farthest = 0, spacing = VTK_DOUBLE_MAX;
+  const double* bounds = this->Fitter->GetModelBoundsUsed();
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double* bounds = this->Fitter->GetModelBoundsUsed();
     farthest = std::max({ farthest, std::abs(bounds[2 * axis]), std::abs(bounds[2 * axis + 1]) });
-    h = std::min(h, knotSpacing[axis]);
-    longest = std::min(longest, LongestStep * sampleSpacing[axis]);
+    const int cells = this->Fitter->GetGridSizeUsed()[axis] - 3;
+    if (cells > 0)
+    {
+      spacing = std::min(spacing, (bounds[2 * axis + 1] - bounds[2 * axis]) / cells);
+    }
   }
   const bool wide = this->OutputPointsPrecision == DOUBLE_PRECISION ||
     (this->OutputPointsPrecision == DEFAULT_PRECISION &&
-      farthest * FloatRounding > VisibleRounding * h);
+      farthest * FloatRounding > VisibleRounding * spacing);
+  return wide ? VTK_DOUBLE : VTK_FLOAT;
+}
 
+void vtkIPIASurfaceReconstruction::ContourImage(vtkPolyData* surface)
+{
+  // Contour filters write float points: contour at the origin, and move in double.
+  vtkImageData* sampled = this->Fitter->GetOutput();
+  const double none[3] = { 0, 0, 0 };
+  vtkNew<vtkImageData> image;
+  image->ShallowCopy(sampled);
+  image->SetOrigin(none);
+  vtkNew<vtkFlyingEdges3D> contour3D;
+  vtkNew<vtkFlyingEdges2D> contour2D;
+  vtkNew<vtkReverseSense> outwards;
+  vtkNew<vtkStripper> polylines;
+  if (sampled->GetDataDimension() == 3)
+  {
+    contour3D->SetInputData(image);
+    contour3D->SetValue(0, 0);
+    contour3D->ComputeNormalsOff();
+    contour3D->ComputeScalarsOff();
+    // Its triangles face towards smaller f.
+    outwards->SetInputConnection(contour3D->GetOutputPort());
+    outwards->Update();
+    surface->ShallowCopy(outwards->GetOutput());
+  }
+  else
+  {
+    contour2D->SetInputData(image);
+    contour2D->SetValue(0, 0);
+    contour2D->ComputeScalarsOff();
+    polylines->SetInputConnection(contour2D->GetOutputPort());
+    polylines->JoinContiguousSegmentsOn();
+    polylines->Update();
+    surface->ShallowCopy(polylines->GetOutput());
+  }
+  this->ReportProgress(0.5);
+  this->MoveOntoZeroSet(surface, sampled);
+}
+
+void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled)
+{
+  vtkPoints* before = surface->GetPoints();
+  const vtkIdType n = before->GetNumberOfPoints();
+  const double* origin = sampled->GetOrigin();
+  const ipia::NewtonStep newton(sampled->GetSpacing());
   vtkNew<vtkPoints> after;
-  after->SetDataType(wide ? VTK_DOUBLE : VTK_FLOAT);
+  after->SetDataType(this->PointType());
   after->SetNumberOfPoints(n);
   vtkNew<vtkFloatArray> normals;
   normals->SetName("Normals");
@@ -236,9 +266,9 @@ void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, const d
         vtkMath::Add(x, origin, x);
         const double f = function->EvaluateFunctionAndGradient(x, g);
         const double slope = vtkMath::Norm(g);
-        if (slope > LeastSlope)
+        const double step = newton.along(f, slope);
+        if (step != 0)
         {
-          const double step = std::min(std::max(-f / slope, -longest), longest);
           for (int axis = 0; axis < 3; ++axis)
           {
             x[axis] += step * g[axis] / slope;
@@ -254,7 +284,7 @@ void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, const d
   surface->GetPointData()->SetNormals(normals);
 }
 
-void vtkIPIASurfaceReconstruction::LeaveOutComponents(vtkPolyData* surface, vtkPolyData* points)
+void vtkIPIASurfaceReconstruction::LeaveOutComponents(vtkPolyData* surface)
 {
   vtkNew<vtkPolyDataConnectivityFilter> components;
   components->SetInputData(surface);
@@ -276,13 +306,14 @@ void vtkIPIASurfaceReconstruction::LeaveOutComponents(vtkPolyData* surface, vtkP
   vtkNew<vtkStaticPointLocator> locator;
   locator->SetDataSet(components->GetOutput());
   locator->BuildLocator();
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  const auto& points = this->Fitter->FittedPositions();
+  for (const auto& point : points)
   {
-    const vtkIdType nearest = locator->FindClosestPoint(points->GetPoint(i));
+    const vtkIdType nearest = locator->FindClosestPoint(point.data());
     ++data[static_cast<std::size_t>(regions->GetValue(nearest))];
   }
-  const double perVertex = static_cast<double>(points->GetNumberOfPoints()) /
-    static_cast<double>(regions->GetNumberOfTuples());
+  const double perVertex =
+    static_cast<double>(points.size()) / static_cast<double>(regions->GetNumberOfTuples());
   components->SetExtractionModeToSpecifiedRegions();
   for (int r = 0; r < n; ++r)
   {

@@ -14,14 +14,18 @@
  * @endcode
  *
  * To the chain fitter, vtkFlyingEdges3D it adds:
+ * - samples at half knot spacings, block by block around the surface: of the hierarchy in 3-D (the
+ *   default) neither a dense lattice nor an image is ever held, so that memory and time grow with
+ *   the surface. With a single level of offset rows, in 2-D, or with SampleDimensions set on the
+ *   fitter, the fitter's image is contoured;
  * - a Newton step x <- x - f grad f / |grad f|^2 of every vertex, at most a third of a sample
- * spacing, which removes most of the error of linear contouring;
+ *   spacing, which removes most of the error of linear contouring;
  * - point normals from the exact gradient of f, towards f > 0;
  * - the component filter: components that hardly any data point is nearest to are left out;
  * - points in double precision where single would show, such as in map coordinates.
  *
  * Input ports and SetInputArrayToProcess are those of vtkIPIAImplicitFitter; its parameters are set
- * on GetFitter(), whose sample dimensions are those of the contour. Refusals and warnings are the
+ * on GetFitter(). Refusals and warnings are the
  * fitter's, reported by this filter; the output is empty after a refusal or an abort.
  *
  * @sa vtkIPIAImplicitFitter vtkIPIAImplicitFunction vtkFlyingEdges3D vtkSurfaceReconstructionFilter
@@ -34,6 +38,7 @@
 #include "vtkPolyDataAlgorithm.h"
 
 class vtkIPIAImplicitFitter;
+class vtkImageData;
 
 class VTKFILTERSIPIA_EXPORT vtkIPIASurfaceReconstruction : public vtkPolyDataAlgorithm
 {
@@ -43,8 +48,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * The fitter that is used: its parameters, and its results after Update(). Its input is set by
-   * this filter.
+   * The fitter that is used: its parameters, and after Update() its results and its
+   * GetImplicitFunction(). Its input is set by this filter, its outputs are left empty.
    */
   vtkIPIAImplicitFitter* GetFitter();
 
@@ -100,8 +105,12 @@ private:
   void operator=(const vtkIPIASurfaceReconstruction&) = delete;
 
   void ForwardEvent(vtkObject* caller, unsigned long event, void* data);
-  void LeaveOutComponents(vtkPolyData* surface, vtkPolyData* points);
-  void MoveOntoZeroSet(vtkPolyData* surface, const double origin[3]);
+  bool IsAborted();
+  bool ReportProgress(double shareOfContour);
+  int PointType() const;
+  void ContourImage(vtkPolyData* surface);
+  void MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled);
+  void LeaveOutComponents(vtkPolyData* surface);
 
   vtkNew<vtkIPIAImplicitFitter> Fitter;
 };

@@ -2,7 +2,6 @@
 #include "HierarchicalFit.h"
 
 #include "BrickOperator.h"
-#include "KnotRefinement.h"
 #include "Parallel.h"
 
 #include <chrono>
@@ -33,6 +32,7 @@ struct Sample
   double Value;
   double Weight;
   bool HasNormal;
+  bool IsExtra; ///< not one of the points that the surface goes through
 };
 
 template <int Dim>
@@ -105,6 +105,7 @@ std::vector<Sample<Dim>> sortedSamples(const Lattice<Dim>& lattice, const Hermit
       sample.Normal = input.Normals.col(k);
     }
     sample.HasNormal = !sample.Normal.isZero(0);
+    sample.IsExtra = extra;
     sample.Value = extra ? input.ExtraValues[k - n] : 0;
     const Vector& weights = extra ? input.ExtraWeights : input.Weights;
     sample.Weight = weights.size() == 0 ? 1 : weights[extra ? k - n : k];
@@ -121,7 +122,7 @@ std::vector<Sample<Dim>> cluster(const std::vector<Sample<Dim>>& samples, int co
   const int shift = Dim * coarsening;
   for (std::size_t k = 0; k < samples.size();)
   {
-    Sample<Dim> mean{ samples[k].Key, Point<Dim>::Zero(), Point<Dim>::Zero(), 0, 0, false };
+    Sample<Dim> mean{ samples[k].Key, Point<Dim>::Zero(), Point<Dim>::Zero(), 0, 0, false, false };
     std::size_t end = k;
     double count = 0;
     Point<Dim> plain = Point<Dim>::Zero();
@@ -531,6 +532,17 @@ LevelReport solveOne(const std::vector<Level<Dim>>& levels, std::vector<BrickLat
   if (finest)
   {
     report.Energy = system.energy();
+    std::vector<float> values;
+    system.evaluate(bricks[l].coefficients(), values);
+    double sum = 0, count = 0;
+    for (std::size_t k = 0; k < values.size(); ++k)
+    {
+      const double f = level.Samples[k].IsExtra ? 0.0 : values[k];
+      sum += f * f;
+      count += !level.Samples[k].IsExtra;
+      report.MaximumError = std::max(report.MaximumError, std::abs(f));
+    }
+    report.AverageError = count > 0 ? sum / count : 0;
   }
   report.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
@@ -667,7 +679,7 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, const Hermi
   HierarchicalResult<Dim> result;
   const std::vector<Level<Dim>> levels =
     makeLevels(lattice, sortedSamples(lattice, input), options);
-  result.Levels = makeBricks(levels);
+  std::vector<BrickLattice<Dim>> bricks = makeBricks(levels);
 
   // The finest level that the points alone determine tells how noisy they are.
   std::size_t gate = levels.size();
@@ -687,12 +699,11 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, const Hermi
       result.Aborted = true;
       return result;
     }
-    result.Reports.push_back(
-      solveOne(levels, result.Levels, l, result.SmoothingLength, options, threads));
+    result.Reports.push_back(solveOne(levels, bricks, l, result.SmoothingLength, options, threads));
     if (l == gate || l + 1 == gate)
     {
       const double before = result.Noise * (l > 0 ? levels[l - 1].Grid.Spacing.mean() : 0);
-      result.Noise = noiseOf(levels[l], result.Levels[l], levels.back().Samples, threads);
+      result.Noise = noiseOf(levels[l], bricks[l], levels.back().Samples, threads);
       if (l + 1 == gate)
       {
         continue;
@@ -701,7 +712,7 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, const Hermi
       if (result.Noise > NoiseGate &&
         result.Noise * levels[l].Grid.Spacing.mean() > NoiseFall * before)
       {
-        result.SmoothingLength = validatedSmoothing(levels, result.Levels, options, threads);
+        result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
       }
       if (result.SmoothingLength > 0)
       {
@@ -711,45 +722,12 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, const Hermi
       }
     }
   }
+  result.Function = std::make_shared<const BrickSpline<Dim>>(std::move(bricks));
   return result;
-}
-
-template <int Dim>
-Vector assembleCoefficients(const std::vector<BrickLattice<Dim>>& levels)
-{
-  Vector coefficients;
-  for (std::size_t l = 0; l < levels.size(); ++l)
-  {
-    const Lattice<Dim>& lattice = levels[l].lattice();
-    coefficients = l == 0 ? Vector(Vector::Zero(lattice.numberOfCoefficients()))
-                          : refineKnots(levels[l - 1].lattice(), coefficients, lattice);
-    for (std::int32_t b = 0; b < levels[l].numberOfBricks(); ++b)
-    {
-      const float* from =
-        levels[l].coefficients().data() + static_cast<std::int64_t>(b) * BrickSize<Dim>;
-      for (int k = 0; k < BrickSize<Dim>; ++k)
-      {
-        Index<Dim> at;
-        bool inside = true;
-        for (int a = 0; a < Dim; ++a)
-        {
-          at[a] = levels[l].position(b)[a] * BrickWidth + (k >> (2 * a) & 3);
-          inside = inside && at[a] < lattice.Size[a];
-        }
-        if (inside)
-        {
-          coefficients[lattice.coefficientIndex(at)] = from[k];
-        }
-      }
-    }
-  }
-  return coefficients;
 }
 
 template HierarchicalResult<2> fitHierarchical<2>(
   const Lattice<2>&, const HermiteInput<2>&, const HierarchicalOptions&, const ProgressCallback&);
 template HierarchicalResult<3> fitHierarchical<3>(
   const Lattice<3>&, const HermiteInput<3>&, const HierarchicalOptions&, const ProgressCallback&);
-template Vector assembleCoefficients<2>(const std::vector<BrickLattice<2>>&);
-template Vector assembleCoefficients<3>(const std::vector<BrickLattice<3>>&);
 }

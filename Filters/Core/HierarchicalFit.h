@@ -12,9 +12,10 @@
 #ifndef ipia_HierarchicalFit_h
 #define ipia_HierarchicalFit_h
 
-#include "BrickLattice.h"
+#include "BrickSpline.h"
 #include "LeastSquaresSolver.h"
 
+#include <memory>
 #include <vector>
 
 namespace ipia
@@ -72,6 +73,8 @@ struct LevelReport
   std::vector<double> ResidualHistory;
   /// sum_k w_k r_k^2 over all rows, value and gradient, with the weights of the level.
   double Energy = 0;
+  double AverageError = 0; ///< E_ave, mean of f^2 over the points; finest level only, as Energy
+  double MaximumError = 0; ///< E_max, max |f| over the points
   double Seconds = 0;
 };
 
@@ -79,8 +82,8 @@ template <int Dim>
 struct HierarchicalResult
 {
   bool Aborted = false;
-  std::vector<BrickLattice<Dim>> Levels; ///< coarse to fine
-  std::vector<LevelReport> Reports;
+  std::shared_ptr<const BrickSpline<Dim>> Function; ///< nullptr if aborted
+  std::vector<LevelReport> Reports;                 ///< coarse to fine
   /// Root mean square distance of the points from the zero set of a level that they determine well,
   /// in its knot spacings; 0 if the points are too sparse for any.
   double Noise = 0;
@@ -91,10 +94,6 @@ struct HierarchicalResult
 template <int Dim>
 HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input,
   const HierarchicalOptions& options, const ProgressCallback& progress = {});
-
-/// The function of all levels as one spline on the finest lattice, exactly.
-template <int Dim>
-Vector assembleCoefficients(const std::vector<BrickLattice<Dim>>& levels);
 }
 
 #endif

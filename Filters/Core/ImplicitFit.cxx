@@ -156,21 +156,6 @@ Vector scaledSupport(const Lattice<Dim>& lattice, const Points<Dim>& positions, 
 }
 
 template <int Dim>
-FitResult<Dim> summarize(ImplicitSpline<Dim> function, const SolverResult& solved, Vector support,
-  const Points<Dim>& positions, int threads)
-{
-  FitResult<Dim> result{ std::move(function), solved, std::move(support), 0, 0, 0 };
-  const Vector atPoints = valuesAt(result.Function, positions, threads);
-  if (atPoints.size())
-  {
-    result.AverageError = atPoints.squaredNorm() / static_cast<double>(atPoints.size());
-    result.MaximumError = atPoints.cwiseAbs().maxCoeff();
-  }
-  result.Oscillation = oscillation(result.Function.lattice(), result.Function.coefficients());
-  return result;
-}
-
-template <int Dim>
 FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
   const FitOptions& options, const ProgressCallback& progress)
 {
@@ -198,8 +183,16 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
       lattice, occupancy, coefficients, outside, inside, input.Positions, farOptions);
   }
 
-  return summarize(ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)), solved,
-    std::move(support), input.Positions, options.Threads);
+  FitResult<Dim> result{ ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)),
+    solved, std::move(support), 0, 0, 0 };
+  const Vector atPoints = valuesAt(result.Function, input.Positions, options.Threads);
+  if (atPoints.size())
+  {
+    result.AverageError = atPoints.squaredNorm() / static_cast<double>(atPoints.size());
+    result.MaximumError = atPoints.cwiseAbs().maxCoeff();
+  }
+  result.Oscillation = oscillation(lattice, result.Function.coefficients());
+  return result;
 }
 
 template struct FitResult<2>;
@@ -208,10 +201,6 @@ template double oscillation<2>(const Lattice<2>&, const Vector&);
 template double oscillation<3>(const Lattice<3>&, const Vector&);
 template Vector scaledSupport<2>(const Lattice<2>&, const Points<2>&, int);
 template Vector scaledSupport<3>(const Lattice<3>&, const Points<3>&, int);
-template FitResult<2> summarize<2>(
-  ImplicitSpline<2>, const SolverResult&, Vector, const Points<2>&, int);
-template FitResult<3> summarize<3>(
-  ImplicitSpline<3>, const SolverResult&, Vector, const Points<3>&, int);
 template FitResult<2> fitImplicit<2>(
   const Lattice<2>&, const FitInput<2>&, const FitOptions&, const ProgressCallback&);
 template FitResult<3> fitImplicit<3>(

@@ -62,11 +62,6 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
 template <int Dim>
 Vector scaledSupport(const Lattice<Dim>& lattice, const Points<Dim>& positions, int threads);
 
-/// A function that was fitted to the given points, and its figures.
-template <int Dim>
-FitResult<Dim> summarize(ImplicitSpline<Dim> function, const SolverResult& solved, Vector support,
-  const Points<Dim>& positions, int threads);
-
 /// R(C) = sum_i sum over the axis neighbours j of i of (c_j - c_i)^2; each edge counts twice.
 template <int Dim>
 double oscillation(const Lattice<Dim>& lattice, const Vector& coefficients);

@@ -1,11 +1,11 @@
 # The mathematics, free of VTK: part of the module, and a library of its own for the core's tests.
 foreach (name IN ITEMS
-    AutomaticLattice BrickLattice BrickOperator CollocationOperator ConstraintRows FarField
+    AutomaticLattice BrickLattice BrickOperator BrickSpline CollocationOperator ConstraintRows FarField
     HierarchicalFit ImplicitFit ImplicitSpline
     KnotRefinement LeastSquaresSolver)
   list(APPEND ipia_core_sources "${CMAKE_CURRENT_LIST_DIR}/${name}.cxx")
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()
-foreach (name IN ITEMS CubicBasis Dispatch HermiteRows Lattice Parallel Types)
+foreach (name IN ITEMS CubicBasis Dispatch HermiteRows Lattice OutsideDomain Parallel Types)
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()

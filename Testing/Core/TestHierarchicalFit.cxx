@@ -30,7 +30,7 @@ HermiteInput<Dim> sphereInput(double radius, std::int64_t n)
 template <int Dim>
 ImplicitSpline<Dim> functionOf(const Lattice<Dim>& lattice, const HierarchicalResult<Dim>& result)
 {
-  return ImplicitSpline<Dim>(lattice, assembleCoefficients(result.Levels));
+  return ImplicitSpline<Dim>(lattice, result.Function->coefficients());
 }
 
 template <typename T>
@@ -47,7 +47,7 @@ TYPED_TEST(HierarchicalFit, FindsTheDistanceToASphere)
   const auto result = fitHierarchical(lattice, input, HierarchicalOptions{});
   const auto f = functionOf(lattice, result);
   EXPECT_EQ(result.SmoothingLength, 0);
-  EXPECT_EQ(result.Levels.size(), 3u);
+  EXPECT_EQ(result.Function->levels().size(), 3u);
   test::Random random(11);
   for (int k = 0; k < 500; ++k)
   {
@@ -81,12 +81,12 @@ TYPED_TEST(HierarchicalFit, GivesTheSameBitsOnAnyNumberOfThreads)
   const auto input = sphereInput<Dim>(0.3, 5000);
   HierarchicalOptions options;
   options.Threads = 1;
-  const Vector one = assembleCoefficients(fitHierarchical(lattice, input, options).Levels);
+  const Vector one = fitHierarchical(lattice, input, options).Function->coefficients();
   for (const int threads : { 1, 2, 4 })
   {
     options.Threads = threads;
     EXPECT_TRUE(
-      test::sameBits(one, assembleCoefficients(fitHierarchical(lattice, input, options).Levels)))
+      test::sameBits(one, fitHierarchical(lattice, input, options).Function->coefficients()))
       << threads << " threads";
   }
 }
@@ -198,6 +198,6 @@ TYPED_TEST(HierarchicalFit, StopsAsAsked)
   EXPECT_EQ(three.Reports.back().ResidualHistory.front(), 1);
   EXPECT_GT(three.Reports.back().Energy, 0);
   options.NumberOfLevels = 1;
-  EXPECT_EQ(fitHierarchical(lattice, input, options).Levels.size(), 1u);
+  EXPECT_EQ(fitHierarchical(lattice, input, options).Function->levels().size(), 1u);
 }
 }
