@@ -100,11 +100,12 @@ void FitProblem::CheckCombination(const FitParameters& parameters)
       "StepSize belongs to ProgressiveIteration on a single level with offset rows; the "
       "hierarchy has none. Leave it 0.";
   }
-  else if (parameters.isClassic() && parameters.FairingWeight > 0)
+  else if (parameters.isClassic() &&
+    (parameters.FairingWeight > 0 || !this->Cloud.LocalFairing.empty()))
   {
-    this->Refusal =
-      "FairingWeight belongs to the hierarchy; a single level with offset rows has no "
-      "fairing. Leave it -1, or set NumberOfLevels to 0.";
+    this->Refusal = "FairingWeight and local fairing weights belong to the hierarchy; a single "
+                    "level with offset rows has no "
+                    "fairing. Leave them unset, or set NumberOfLevels to 0.";
   }
 }
 
@@ -311,9 +312,12 @@ void FitProblem::DropPointsOutside()
       cloud.Positions[kept] = cloud.Positions[k];
       cloud.Normals[kept] = cloud.Normals[k];
       cloud.Ids[kept] = cloud.Ids[k];
-      if (!cloud.Weights.empty())
+      for (std::vector<double>* scalars : { &cloud.Weights, &cloud.LocalFairing })
       {
-        cloud.Weights[kept] = cloud.Weights[k];
+        if (!scalars->empty())
+        {
+          (*scalars)[kept] = (*scalars)[k];
+        }
       }
       ++kept;
     }
@@ -323,6 +327,7 @@ void FitProblem::DropPointsOutside()
   cloud.Normals.resize(kept);
   cloud.Ids.resize(kept);
   cloud.Weights.resize(cloud.Weights.empty() ? 0 : kept);
+  cloud.LocalFairing.resize(cloud.LocalFairing.empty() ? 0 : kept);
   std::size_t keptRows = 0;
   for (std::size_t k = 0; k < cloud.ExtraPositions.size(); ++k)
   {

@@ -69,48 +69,67 @@ Lattice<Dim> latticeOf(const FitProblem& problem, const Placement<Dim>& place)
   return lattice;
 }
 
-/// The rows of the problem; offset rows only where the parameters ask for them.
 template <int Dim>
-FitInput<Dim> inputOf(const FitProblem& problem, const FitParameters& parameters,
-  const Placement<Dim>& place, double automaticDistance)
+Points<Dim> normalsOf(const FitProblem& problem, const Placement<Dim>& place)
 {
-  const PointCloud& cloud = problem.Cloud;
-  FitInput<Dim> input;
-  input.Positions = toLocal(place, cloud.Positions);
-  input.Normals.resize(Dim, input.Positions.cols());
-  for (std::size_t k = 0; k < cloud.Normals.size(); ++k)
+  const auto& normals = problem.Cloud.Normals;
+  Points<Dim> local(Dim, static_cast<Eigen::Index>(normals.size()));
+  for (std::size_t k = 0; k < normals.size(); ++k)
   {
     for (int a = 0; a < Dim; ++a)
     {
-      const int axis = place.Axis[static_cast<std::size_t>(a)];
-      input.Normals(a, static_cast<Eigen::Index>(k)) =
-        cloud.Normals[k][static_cast<std::size_t>(axis)];
+      local(a, static_cast<Eigen::Index>(k)) =
+        normals[k][static_cast<std::size_t>(place.Axis[static_cast<std::size_t>(a)])];
     }
   }
-  input.Weights = toVector(cloud.Weights);
-  input.ExtraPositions = toLocal(place, cloud.ExtraPositions);
-  input.ExtraValues = toVector(cloud.ExtraValues);
+  return local;
+}
+
+/// Offset rows as the parameters ask for them.
+struct OffsetRows
+{
+  Vector OutwardDistance, InwardDistance; ///< empty: none
+  double OutwardValue = 0, InwardValue = 0;
+};
+
+OffsetRows offsetRowsOf(
+  const FitProblem& problem, const FitParameters& parameters, double automaticDistance)
+{
+  const PointCloud& cloud = problem.Cloud;
+  OffsetRows rows;
   if (parameters.NormalConstraint == vtkIPIAImplicitFitter::Gradient)
   {
-    return input;
+    return rows;
   }
-  input.OutwardDistance = offsetDistances(cloud, parameters.OffsetDistance, automaticDistance, 1);
-  input.OutwardValue = parameters.OffsetValue;
+  rows.OutwardDistance = offsetDistances(cloud, parameters.OffsetDistance, automaticDistance, 1);
+  rows.OutwardValue = parameters.OffsetValue;
   if (parameters.NormalConstraint == vtkIPIAImplicitFitter::TwoSidedOffset)
   {
     const double inward = parameters.InwardOffsetDistance > 0 ? parameters.InwardOffsetDistance
                                                               : parameters.OffsetDistance;
-    input.InwardDistance = offsetDistances(cloud, inward, automaticDistance, -1);
-    input.InwardValue =
+    rows.InwardDistance = offsetDistances(cloud, inward, automaticDistance, -1);
+    rows.InwardValue =
       parameters.InwardOffsetValue > 0 ? parameters.InwardOffsetValue : parameters.OffsetValue;
   }
-  return input;
+  return rows;
 }
 
 template <int Dim>
-void solveClassic(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
-  const FitParameters& parameters, const ProgressCallback& progress, FitSolution<Dim>& solution)
+void solveClassic(const Lattice<Dim>& lattice, const FitProblem& problem,
+  const FitParameters& parameters, const OffsetRows& offsets, const ProgressCallback& progress,
+  FitSolution<Dim>& solution)
 {
+  FitInput<Dim> input;
+  input.Positions = toLocal(solution.Place, problem.Cloud.Positions);
+  input.Normals = normalsOf(problem, solution.Place);
+  input.Weights = toVector(problem.Cloud.Weights);
+  input.ExtraPositions = toLocal(solution.Place, problem.Cloud.ExtraPositions);
+  input.ExtraValues = toVector(problem.Cloud.ExtraValues);
+  input.OutwardDistance = offsets.OutwardDistance;
+  input.OutwardValue = offsets.OutwardValue;
+  input.InwardDistance = offsets.InwardDistance;
+  input.InwardValue = offsets.InwardValue;
+
   FitOptions options;
   const bool conjugate = parameters.Solver == vtkIPIAImplicitFitter::ConjugateGradient;
   options.Solver.Type =
@@ -150,17 +169,19 @@ void solveClassic(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
   solution.Oscillation = fitted.Oscillation;
 }
 
-/// The offset rows of the classic method and the extra rows as rows of the hierarchy.
+/// Points and gradient rows, or offset rows in their place as extra rows.
 template <int Dim>
-HermiteInput<Dim> hermiteInput(const Lattice<Dim>& lattice, const FitInput<Dim>& input)
+HermiteInput<Dim> hermiteInput(const Lattice<Dim>& lattice, const FitProblem& problem,
+  const OffsetRows& offsets, const Placement<Dim>& place)
 {
-  const std::int64_t n = input.Positions.cols();
-  const std::int64_t most =
-    input.OutwardDistance.size() + input.InwardDistance.size() + input.ExtraPositions.cols();
+  const PointCloud& cloud = problem.Cloud;
   HermiteInput<Dim> rows;
-  rows.Positions = input.Positions;
-  rows.Normals = input.Normals;
-  rows.Weights = input.Weights;
+  rows.Positions = toLocal(place, cloud.Positions);
+  rows.Normals = normalsOf(problem, place);
+  rows.Weights = toVector(cloud.Weights);
+  rows.LocalFairing = toVector(cloud.LocalFairing);
+  const auto extra = static_cast<std::int64_t>(cloud.ExtraPositions.size());
+  const std::int64_t most = offsets.OutwardDistance.size() + offsets.InwardDistance.size() + extra;
   rows.ExtraPositions.resize(Dim, most);
   rows.ExtraValues.resize(most);
   rows.ExtraWeights.resize(most);
@@ -175,24 +196,23 @@ HermiteInput<Dim> hermiteInput(const Lattice<Dim>& lattice, const FitInput<Dim>&
   {
     for (std::int64_t k = 0; k < distance.size(); ++k)
     {
-      const Point<Dim> position =
-        input.Positions.col(k) + side * distance[k] * input.Normals.col(k);
+      const Point<Dim> position = rows.Positions.col(k) + side * distance[k] * rows.Normals.col(k);
       if (distance[k] > 0 && lattice.contains(position))
       {
         append(position, side * (value > 0 ? value : distance[k]),
-          input.Weights.size() ? input.Weights[k] : 1.0);
+          rows.Weights.size() ? rows.Weights[k] : 1.0);
       }
     }
   };
-  if (most > input.ExtraPositions.cols())
+  appendOffsets(offsets.OutwardDistance, offsets.OutwardValue, 1);
+  appendOffsets(offsets.InwardDistance, offsets.InwardValue, -1);
+  for (std::size_t k = 0; k < cloud.ExtraPositions.size(); ++k)
   {
-    rows.Normals = Points<Dim>::Zero(Dim, n); // offset rows take the place of gradient rows
+    append(place.toLocal(cloud.ExtraPositions[k].data()), cloud.ExtraValues[k], 1);
   }
-  appendOffsets(input.OutwardDistance, input.OutwardValue, 1);
-  appendOffsets(input.InwardDistance, input.InwardValue, -1);
-  for (std::int64_t k = 0; k < input.ExtraPositions.cols(); ++k)
+  if (offsets.OutwardDistance.size() > 0)
   {
-    append(input.ExtraPositions.col(k), input.ExtraValues[k], 1);
+    rows.Normals.setZero();
   }
   rows.ExtraPositions.conservativeResize(Dim, used);
   rows.ExtraValues.conservativeResize(used);
@@ -201,8 +221,8 @@ HermiteInput<Dim> hermiteInput(const Lattice<Dim>& lattice, const FitInput<Dim>&
 }
 
 template <int Dim>
-void solveHierarchical(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
-  const FitParameters& parameters, bool inBricks, const ProgressCallback& progress,
+void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
+  const FitParameters& parameters, const OffsetRows& offsets, const ProgressCallback& progress,
   FitSolution<Dim>& solution)
 {
   HierarchicalOptions options;
@@ -224,8 +244,8 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
     options.BandThinPlate = membrane ? 0 : parameters.FairingWeight;
     options.SmoothingLength = 0;
   }
-  HierarchicalResult<Dim> fitted =
-    fitHierarchical(lattice, hermiteInput(lattice, input), options, progress);
+  HierarchicalResult<Dim> fitted = fitHierarchical(
+    lattice, hermiteInput(lattice, problem, offsets, solution.Place), options, progress);
   solution.Aborted = fitted.Aborted;
   if (fitted.Aborted)
   {
@@ -241,7 +261,7 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
   solution.Solver.ResidualHistory = finest.ResidualHistory;
   solution.AverageError = finest.AverageError;
   solution.MaximumError = finest.MaximumError;
-  if (inBricks)
+  if (problem.staysInBricks(parameters))
   {
     return;
   }
@@ -249,7 +269,8 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
     std::make_shared<const ImplicitSpline<Dim>>(lattice, solution.Bricks->coefficients());
   if (parameters.GenerateSupport)
   {
-    solution.Support = scaledSupport(lattice, input.Positions, options.Threads);
+    solution.Support =
+      scaledSupport(lattice, toLocal(solution.Place, problem.Cloud.Positions), options.Threads);
   }
 }
 }
@@ -266,15 +287,14 @@ FitSolution<Dim> solve(
   {
     solution.OffsetDistance = parameters.OffsetDistance > 0 ? parameters.OffsetDistance : automatic;
   }
-  const FitInput<Dim> input = inputOf(problem, parameters, solution.Place, automatic);
+  const OffsetRows offsets = offsetRowsOf(problem, parameters, automatic);
   if (parameters.isClassic())
   {
-    solveClassic(lattice, input, parameters, progress, solution);
+    solveClassic(lattice, problem, parameters, offsets, progress, solution);
   }
   else
   {
-    solveHierarchical(
-      lattice, input, parameters, problem.staysInBricks(parameters), progress, solution);
+    solveHierarchical(lattice, problem, parameters, offsets, progress, solution);
   }
   return solution;
 }

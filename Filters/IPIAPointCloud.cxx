@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IPIAPointCloud.h"
 
+#include "IPIAText.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkAppendPolyData.h"
 #include "vtkCompositeDataIterator.h"
@@ -37,6 +39,14 @@ bool isFinite(const double* x, int n = 3)
 }
 
 using Vector3 = Eigen::Map<const Eigen::Vector3d>;
+
+/// Optional arrays of one value per point.
+constexpr struct
+{
+  int Index;
+  const char* Name;
+} PointScalars[] = { { PointCloud::WeightsIndex, "row weights" },
+  { PointCloud::LocalFairingIndex, "local fairing weights" } };
 }
 
 void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows)
@@ -74,9 +84,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     vtkDataArray* normals = choose(NormalsIndex, blocks[b]);
-    vtkDataArray* weights = choose(WeightsIndex, blocks[b]);
     this->ChosenArrays.push_back(normals);
-    this->ChosenArrays.push_back(weights);
     if (!normals || normals->GetNumberOfComponents() != 3 ||
       normals->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints())
     {
@@ -93,22 +101,27 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
         "compute normals with vtkPCANormalEstimation.";
       return;
     }
-    if (weights &&
-      (weights->GetNumberOfComponents() != 1 ||
-        weights->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints()))
+    for (const auto& scalar : PointScalars)
     {
-      this->Refusal = "The array of row weights has " +
-        std::to_string(weights->GetNumberOfComponents()) + " components and " +
-        std::to_string(weights->GetNumberOfTuples()) + " tuples for " +
-        std::to_string(blocks[b]->GetNumberOfPoints()) +
-        " points; it must have one component and one tuple per point.";
-      return;
-    }
-    if ((weights == nullptr) != (this->ChosenArrays[1] == nullptr))
-    {
-      this->Refusal =
-        "Some blocks of the input have row weights and others not. Give all of them the array.";
-      return;
+      vtkDataArray* values = choose(scalar.Index, blocks[b]);
+      this->ChosenArrays.push_back(values);
+      const std::size_t inFirst = this->ChosenArrays.size() - 1 - b * (1 + std::size(PointScalars));
+      if (values &&
+        (values->GetNumberOfComponents() != 1 ||
+          values->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints()))
+      {
+        this->Refusal = text("The array of ", scalar.Name, " has ", values->GetNumberOfComponents(),
+          " components and ", values->GetNumberOfTuples(), " tuples for ",
+          blocks[b]->GetNumberOfPoints(),
+          " points; it must have one component and one tuple per point.");
+        return;
+      }
+      if ((values == nullptr) != (this->ChosenArrays[inFirst] == nullptr))
+      {
+        this->Refusal = text("Some blocks of the input have ", scalar.Name,
+          " and others not. Give all of them the array.");
+        return;
+      }
     }
   }
   if (blocks.size() == 1)
@@ -128,6 +141,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   }
   vtkDataArray* normals = choose(NormalsIndex, this->Source);
   vtkDataArray* weights = choose(WeightsIndex, this->Source);
+  vtkDataArray* fairing = choose(LocalFairingIndex, this->Source);
   if (!normals)
   {
     this->Refusal =
@@ -141,9 +155,10 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   this->Positions.reserve(reserve);
   this->Normals.reserve(reserve);
   this->Weights.reserve(weights ? reserve : 0);
+  this->LocalFairing.reserve(fairing ? reserve : 0);
   this->Bounds = { VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX,
     -VTK_DOUBLE_MAX };
-  bool anyNormal = false, anyWeight = !weights;
+  bool anyNormal = false, anyWeight = false;
   for (vtkIdType id = 0; id < n; ++id)
   {
     std::array<double, 3> x, normal;
@@ -153,16 +168,21 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
       ++this->LeftOut.NonFinitePoints;
       continue;
     }
+    const double w = weights ? weights->GetComponent(id, 0) : 1.0;
+    const double local = fairing ? fairing->GetComponent(id, 0) : 1.0;
+    if (!(w >= 0 && std::isfinite(w) && local > 0 && std::isfinite(local)))
+    {
+      ++this->LeftOut.InvalidWeights;
+      continue;
+    }
+    anyWeight = anyWeight || w > 0;
     if (weights)
     {
-      const double w = weights->GetComponent(id, 0);
-      if (!(w >= 0 && std::isfinite(w)))
-      {
-        ++this->LeftOut.InvalidWeights;
-        continue;
-      }
       this->Weights.push_back(w);
-      anyWeight = anyWeight || w > 0;
+    }
+    if (fairing)
+    {
+      this->LocalFairing.push_back(local);
     }
     normals->GetTuple(id, normal.data());
     // Scaled first, so that neither tiny nor huge normals under- or overflow.

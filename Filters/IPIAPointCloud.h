@@ -30,7 +30,8 @@ public:
   {
     NormalsIndex = 0,
     WeightsIndex = 1,
-    ExtraValuesIndex = 2
+    ExtraValuesIndex = 2,
+    LocalFairingIndex = 3
   };
 
   /// The array of a data set that was chosen for an index, or nullptr.
@@ -47,12 +48,14 @@ public:
 
   /// The input as one data set; Ids are the points of it that were taken.
   vtkSmartPointer<vtkPolyData> Source;
-  /// The arrays of normals and weights that were chosen in each block (nullptr: none).
+  /// The arrays of normals, weights and local fairing weights that were chosen in each block
+  /// (nullptr: none).
   std::vector<vtkDataArray*> ChosenArrays;
   std::vector<vtkIdType> Ids;
   std::vector<std::array<double, 3>> Positions;
   std::vector<std::array<double, 3>> Normals; ///< unit length, or 0 where there is none
   std::vector<double> Weights;                ///< empty: 1
+  std::vector<double> LocalFairing;           ///< empty: 1
   std::vector<std::array<double, 3>> ExtraPositions;
   std::vector<double> ExtraValues;
 

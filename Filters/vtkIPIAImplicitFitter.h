@@ -46,8 +46,10 @@
  * ### Input
  * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of
  * them, all of whose blocks make one fit. SetInputArrayToProcess: 0, the normals (3 components;
- * default: the active point normals); 1, optional row weights w_k >= 0 (1 component). Any numeric
- * type. Normals need not have unit length.
+ * default: the active point normals); 1, optional row weights w_k >= 0 (1 component); 3, optional
+ * local fairing weights > 0 (1 component, of the hierarchy): around points where it is 10 the
+ * fairing energy counts tenfold against the data, so that f is smoother there, where it is 0.1 a
+ * tenth; 1 is as without. Any numeric type. Normals need not have unit length.
  *
  * Port 1, optional: vtkPolyData with more rows, points at which f shall take a given value, of
  * weight

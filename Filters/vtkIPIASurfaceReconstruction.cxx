@@ -136,7 +136,7 @@ int vtkIPIASurfaceReconstruction::RequestData(
     }
     this->Fitter->SetInputDataObject(port, copy);
   }
-  for (int index = 0; index < 3; ++index)
+  for (int index = 0; index < 4; ++index)
   {
     this->Fitter->SetInputArrayToProcess(index, this->GetInputArrayInformation(index));
   }

@@ -1,8 +1,8 @@
 # The mathematics, free of VTK: part of the module, and a library of its own for the core's tests.
 foreach (name IN ITEMS
     AutomaticLattice BrickLattice BrickOperator BrickSpline CollocationOperator ConstraintRows FarField
-    HierarchicalFit ImplicitFit ImplicitSpline
-    KnotRefinement LeastSquaresSolver)
+    HierarchicalFit HierarchyLevel ImplicitFit ImplicitSpline
+    KnotRefinement LeastSquaresSolver PointSamples)
   list(APPEND ipia_core_sources "${CMAKE_CURRENT_LIST_DIR}/${name}.cxx")
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HierarchyLevel.h"
+
+#include "BrickOperator.h"
+#include "Parallel.h"
+
+#include <chrono>
+
+namespace ipia
+{
+namespace
+{
+/// Coarser levels see clusters in sub-cells, so many halvings of their knot cells.
+constexpr int ClusterBits = 2;
+/// Points per occupied cell beyond which the finest level sees clusters as well, in sub-cells of
+/// SubCellBits halvings: a surface crosses about as many of these.
+constexpr double MostPointsPerCell = 64;
+/// Cells along the longest side up to which a level may be the coarsest.
+constexpr std::int64_t CoarsestCells = 16;
+/// sum_i B_i(x)^2 on average: the density that one row per occupied cell of a surface has.
+constexpr double UnitDensity = 151. / 315;
+/// The scale of residuals is at least this many knot spacings.
+constexpr double LeastScale = 0.1;
+/// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
+constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
+
+template <int Dim>
+HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, double gradient)
+{
+  HermiteRows<Dim> rows;
+  rows.Rows.reserve(level.Data.size());
+  std::array<std::vector<typename HermiteRows<Dim>::Brick>, HermiteRows<Dim>::NumberOfColours>
+    coloured;
+  Index<Dim> current;
+  current.fill(-1);
+  std::size_t colour = 0;
+  for (const Sample<Dim>& sample : level.Data)
+  {
+    const Index<Dim> cell = level.cellOf(sample);
+    Index<Dim> brick;
+    HermiteRow<Dim> row;
+    row.Cell = 0;
+    for (int a = 0; a < Dim; ++a)
+    {
+      brick[a] = cell[a] / BrickWidth;
+      row.Cell |= static_cast<std::int32_t>(cell[a] % BrickWidth) << (2 * a);
+      row.T[a] = static_cast<float>(
+        std::ldexp(sample.Position[a], -level.Coarsening) - static_cast<double>(cell[a]));
+      row.Slope[a] = static_cast<float>(level.Grid.Spacing[a]) * sample.Normal[a];
+    }
+    row.Value = sample.Value;
+    row.Weight = sample.Weight;
+    row.GradientWeight =
+      sample.HasNormal ? static_cast<float>(sample.Weight * gradient * gradient) : 0.F;
+    row.Source = static_cast<std::int32_t>(rows.Rows.size());
+    if (brick != current)
+    {
+      current = brick;
+      colour = 0;
+      for (int a = 0; a < Dim; ++a)
+      {
+        colour |= static_cast<std::size_t>(brick[a] & 1) << a;
+      }
+      const auto at = static_cast<std::int64_t>(rows.Rows.size());
+      coloured[colour].push_back({ bricks.brickAt(brick), at, at });
+    }
+    ++coloured[colour].back().End;
+    rows.Rows.push_back(row);
+  }
+  for (std::size_t k = 0; k < coloured.size(); ++k)
+  {
+    rows.ColourBegin[k] = rows.Bricks.size();
+    rows.Bricks.insert(rows.Bricks.end(), coloured[k].begin(), coloured[k].end());
+  }
+  rows.ColourBegin[coloured.size()] = rows.Bricks.size();
+  return rows;
+}
+
+double median(std::vector<float> values)
+{
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Scales the weights so that the rows of an occupied cell weigh about 1 in all, and takes weight
+/// from rows that the coarser prediction misses by far and where the fairing is to count more.
+template <int Dim>
+void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, HermiteRows<Dim>& rows,
+  bool predicted, const HierarchicalOptions& options, int threads)
+{
+  const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
+  std::vector<float> sums, density, prediction;
+  collocation.density(sums);
+  collocation.evaluate(sums, density);
+  double logarithms = 0, total = 0;
+  for (const HermiteRow<Dim>& row : rows.Rows)
+  {
+    const double relative = density[static_cast<std::size_t>(row.Source)] / UnitDensity;
+    if (row.Weight > 0 && relative > 0)
+    {
+      logarithms += row.Weight * std::log(relative);
+      total += row.Weight;
+    }
+  }
+  const double typical = total > 0 ? std::exp(logarithms / total) : 1.0;
+
+  double scale = 0;
+  if (predicted && options.RobustFactor > 0)
+  {
+    collocation.evaluate(bricks.coefficients(), prediction);
+    std::vector<float> misses(prediction.size());
+    for (const HermiteRow<Dim>& row : rows.Rows)
+    {
+      const auto k = static_cast<std::size_t>(row.Source);
+      misses[k] = prediction[k] = std::abs(prediction[k] - row.Value);
+    }
+    scale = options.RobustFactor *
+      std::max(1.4826 * median(std::move(misses)), LeastScale * bricks.lattice().Spacing.mean());
+  }
+  for (HermiteRow<Dim>& row : rows.Rows)
+  {
+    double factor = 1 / typical;
+    if (scale > 0)
+    {
+      const double miss = prediction[static_cast<std::size_t>(row.Source)] / scale;
+      const double trust = 1 / (1 + miss * miss);
+      factor *= trust * trust;
+    }
+    factor /= level.Data[static_cast<std::size_t>(row.Source)].Fairing;
+    row.Weight *= static_cast<float>(factor);
+    row.GradientWeight *= static_cast<float>(factor);
+  }
+}
+
+/// Conjugate gradients with the diagonal as preconditioner, on the active coefficients.
+template <int Dim>
+void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
+  double tolerance, StoppingRule rule, int threads, LevelReport& report)
+{
+  std::vector<float> r, p, q, inverse;
+  system.diagonal(inverse);
+  system.residual(r);
+  const auto n = static_cast<std::int64_t>(r.size());
+  for (std::int32_t b = 0; b < bricks.numberOfActiveBricks(); ++b)
+  {
+    const std::uint64_t mask = bricks.activeMask(b);
+    float* d = inverse.data() + static_cast<std::int64_t>(b) * BrickSize<Dim>;
+    for (int k = 0; k < BrickSize<Dim>; ++k)
+    {
+      d[k] = (mask >> k & 1) != 0 && d[k] > 0 ? 1 / d[k] : 0.F;
+    }
+  }
+  p.resize(r.size());
+  double rz = parallelSum(n, threads,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      double sum = 0;
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        const auto k = static_cast<std::size_t>(i);
+        p[k] = inverse[k] * r[k];
+        sum += static_cast<double>(p[k]) * r[k];
+      }
+      return sum;
+    });
+  const double first = rz;
+  report.ResidualHistory.assign(1, first > 0 ? 1. : 0.);
+  double measure = report.ResidualHistory.front();
+  float* c = bricks.coefficients().data();
+  while (report.NumberOfIterations < iterations && rz > 0 && !(measure < tolerance))
+  {
+    system.product(p, q);
+    const double curvature = parallelSum(n, threads,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        double sum = 0;
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          const auto k = static_cast<std::size_t>(i);
+          sum += static_cast<double>(p[k]) * q[k];
+        }
+        return sum;
+      });
+    if (!(curvature > 0))
+    {
+      break;
+    }
+    const auto step = static_cast<float>(rz / curvature);
+    const double next = parallelSum(n, threads,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        double sum = 0;
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          const auto k = static_cast<std::size_t>(i);
+          c[k] += step * p[k];
+          r[k] -= step * q[k];
+          sum += static_cast<double>(inverse[k] * r[k]) * r[k];
+        }
+        return sum;
+      });
+    const auto ratio = static_cast<float>(next / rz);
+    const double energyChange = rz * static_cast<double>(step);
+    rz = next;
+    report.ResidualHistory.push_back(std::sqrt(rz / first));
+    measure = rule == StoppingRule::RelativeResidual ? report.ResidualHistory.back() : energyChange;
+    parallelChunks(n, threads,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          const auto k = static_cast<std::size_t>(i);
+          p[k] = inverse[k] * r[k] + ratio * p[k];
+        }
+      });
+    ++report.NumberOfIterations;
+  }
+}
+}
+
+template <int Dim>
+double occupiedCells(const Level<Dim>& level)
+{
+  double count = 0;
+  Index<Dim> last;
+  last.fill(-1);
+  for (const Sample<Dim>& sample : level.Data)
+  {
+    const Index<Dim> cell = level.cellOf(sample);
+    count += cell != last;
+    last = cell;
+  }
+  return count;
+}
+
+template <int Dim>
+Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening)
+{
+  return cluster(finer, coarsening + SubCellBits - ClusterBits);
+}
+
+template <int Dim>
+std::vector<Level<Dim>> makeLevels(
+  const Lattice<Dim>& lattice, Samples<Dim> points, const HierarchicalOptions& options)
+{
+  std::vector<Level<Dim>> levels;
+  for (int coarsening = 0;; ++coarsening)
+  {
+    Level<Dim> level;
+    level.Coarsening = coarsening;
+    std::int64_t longest = 0;
+    for (int a = 0; a < Dim; ++a)
+    {
+      const std::int64_t step = std::int64_t{ 1 } << coarsening;
+      const std::int64_t cells = (lattice.cells(a) + step - 1) / step;
+      level.Grid.Size[a] = cells + Order - 1;
+      level.Grid.Spacing[a] = lattice.Spacing[a] * static_cast<double>(step);
+      longest = std::max(longest, cells);
+    }
+    level.Dense = longest <= options.DenseCells;
+    if (coarsening == 0)
+    {
+      level.Data = std::move(points);
+      if (static_cast<double>(level.Data.size()) > MostPointsPerCell * occupiedCells(level))
+      {
+        level.Unclustered = std::move(level.Data);
+        level.Data = cluster(level.Unclustered, 0);
+      }
+    }
+    else
+    {
+      level.Data = coarserData(levels.back().Data, coarsening);
+    }
+    levels.push_back(std::move(level));
+    const bool coarsest = options.NumberOfLevels > 0 ? coarsening + 1 == options.NumberOfLevels
+                                                     : longest <= CoarsestCells;
+    if (coarsest || longest == 1)
+    {
+      break;
+    }
+  }
+  // Below the coarsest level there is nothing to correct: it is solved everywhere.
+  levels.back().Dense = true;
+  std::reverse(levels.begin(), levels.end());
+  return levels;
+}
+
+template <int Dim>
+std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels)
+{
+  std::vector<BrickLattice<Dim>> bricks;
+  for (const Level<Dim>& level : levels)
+  {
+    bricks.emplace_back(level.Grid);
+  }
+  for (std::size_t l = levels.size(); l-- > 0;)
+  {
+    if (levels[l].Dense)
+    {
+      bricks[l].activateAll();
+    }
+    else
+    {
+      Index<Dim> last;
+      last.fill(-1);
+      for (const Sample<Dim>& sample : levels[l].Data)
+      {
+        const Index<Dim> cell = levels[l].cellOf(sample);
+        if (cell != last)
+        {
+          bricks[l].activateAround(cell);
+          last = cell;
+        }
+      }
+      bricks[l].storeAroundActive();
+    }
+    if (l + 1 < levels.size() && !levels[l].Dense)
+    {
+      bricks[l].storeForRefinement(bricks[l + 1]);
+    }
+    bricks[l].allocate();
+  }
+  return bricks;
+}
+
+template <int Dim>
+LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
+  std::vector<BrickLattice<Dim>>& bricks, std::size_t l, double smoothing,
+  const HierarchicalOptions& options, int threads)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const Level<Dim>& level = levels[l];
+  const bool finest = l + 1 == levels.size();
+  if (l > 0)
+  {
+    bricks[l].refineFrom(bricks[l - 1], threads);
+  }
+  else
+  {
+    std::fill(bricks[l].coefficients().begin(), bricks[l].coefficients().end(), 0.F);
+  }
+  const double relative = smoothing / level.Grid.Spacing.mean();
+  const double gradient = level.Dense ? options.DenseGradient
+    : finest                          ? options.FinestGradient
+                                      : options.BandGradient;
+  HermiteRows<Dim> rows =
+    makeRows(level, bricks[l], std::max(gradient, std::min(relative, MostSmoothingGradient)));
+  weighRows(level, bricks[l], rows, l > 0, options, threads);
+  FairingWeights fairing;
+  fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : options.BandMembrane);
+  fairing.ThinPlate =
+    static_cast<float>(std::max(level.Dense ? options.DenseThinPlate : options.BandThinPlate,
+      SmoothingThinPlate * relative * relative * relative));
+  const BrickOperator<Dim> system(bricks[l], rows, fairing, threads);
+
+  LevelReport report;
+  report.Spacing = level.Grid.Spacing.maxCoeff();
+  report.NumberOfRows = static_cast<std::int64_t>(rows.Rows.size());
+  report.NumberOfActiveCoefficients = bricks[l].numberOfActiveCoefficients();
+  const int iterations = finest ? options.FinestIterations
+    : level.Dense               ? options.DenseIterations
+                                : options.BandIterations;
+  const double tolerance = finest ? options.FinestTolerance
+    : level.Dense                 ? options.DenseTolerance
+                                  : options.BandTolerance;
+  solveSystem(system, bricks[l], iterations, tolerance,
+    finest ? options.Rule : StoppingRule::RelativeResidual, threads, report);
+  if (finest)
+  {
+    report.Energy = system.energy();
+  }
+  report.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+template <int Dim>
+std::vector<float> evaluateLevel(
+  const Level<Dim>& level, const BrickLattice<Dim>& bricks, Samples<Dim> samples, int threads)
+{
+  const Level<Dim> atSamples{ level.Coarsening, level.Grid, level.Dense, std::move(samples), {} };
+  const HermiteRows<Dim> rows = makeRows(atSamples, bricks, 0);
+  std::vector<float> values;
+  BrickOperator<Dim>(bricks, rows, {}, threads).evaluateWithGradient(bricks.coefficients(), values);
+  for (std::size_t k = 0; k < rows.Rows.size(); ++k)
+  {
+    for (int a = 0; a < Dim; ++a)
+    {
+      values[k * (1 + Dim) + 1 + static_cast<std::size_t>(a)] /=
+        static_cast<float>(level.Grid.Spacing[a]);
+    }
+  }
+  return values;
+}
+
+template std::vector<Level<2>> makeLevels<2>(
+  const Lattice<2>&, Samples<2>, const HierarchicalOptions&);
+template Samples<2> coarserData<2>(const Samples<2>&, int);
+template std::vector<BrickLattice<2>> makeBricks<2>(const std::vector<Level<2>>&);
+template double occupiedCells<2>(const Level<2>&);
+template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&,
+  std::size_t, double, const HierarchicalOptions&, int);
+template std::vector<float> evaluateLevel<2>(
+  const Level<2>&, const BrickLattice<2>&, Samples<2>, int);
+template std::vector<Level<3>> makeLevels<3>(
+  const Lattice<3>&, Samples<3>, const HierarchicalOptions&);
+template Samples<3> coarserData<3>(const Samples<3>&, int);
+template std::vector<BrickLattice<3>> makeBricks<3>(const std::vector<Level<3>>&);
+template double occupiedCells<3>(const Level<3>&);
+template LevelReport solveLevel<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&,
+  std::size_t, double, const HierarchicalOptions&, int);
+template std::vector<float> evaluateLevel<3>(
+  const Level<3>&, const BrickLattice<3>&, Samples<3>, int);
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * One level of a hierarchical fit: its data, its band of coefficients, and its solution.
+ */
+#ifndef ipia_HierarchyLevel_h
+#define ipia_HierarchyLevel_h
+
+#include "BrickLattice.h"
+#include "LeastSquaresSolver.h"
+#include "PointSamples.h"
+
+#include <vector>
+
+namespace ipia
+{
+/// The constants of the method; lengths in knot spacings of the level, weights without unit.
+struct HierarchicalOptions
+{
+  int NumberOfLevels =
+    0;                 ///< 0: until the coarsest has no more than 16 cells along its longest side
+  int DenseCells = 32; ///< levels with no more cells along their longest side are dense
+
+  /// Share of the gradient rows, g: h grad f = h n has the weight g^2 of f = 0.
+  double DenseGradient = 1, BandGradient = 0.3, FinestGradient = 0.3;
+  double DenseMembrane = 0.01;  ///< tau_1 of the dense levels
+  double DenseThinPlate = 1e-3; ///< tau_2 of the dense levels
+  double BandMembrane = 0;      ///< tau_1 of the others
+  double BandThinPlate = 1e-4;  ///< tau_2 of the others
+  int DenseIterations = 20;
+  double DenseTolerance = 1e-5;
+  int BandIterations = 12;
+  int FinestIterations = 12;
+  double BandTolerance = 1e-3;
+  double FinestTolerance = 1e-3;
+  StoppingRule Rule = StoppingRule::RelativeResidual; ///< of the finest level
+  /// Residuals beyond this many standard deviations of the coarser prediction lose weight.
+  double RobustFactor = 4;
+  /// Smoothing length, lengths in the units of the points: weights of gradient rows and thin plate
+  /// grow where it exceeds the knot spacing. Negative: none on clean data, by cross-validation on
+  /// noisy ones.
+  double SmoothingLength = -1;
+  int Threads = 0;
+};
+
+/// What one level did.
+struct LevelReport
+{
+  double Spacing = 0;
+  std::int64_t NumberOfRows = 0;
+  std::int64_t NumberOfActiveCoefficients = 0;
+  int NumberOfIterations = 0;
+  /// The preconditioned residual before the first and after each iteration, relative to the first.
+  std::vector<double> ResidualHistory;
+  /// sum_k w_k r_k^2 over all rows, value and gradient, with the weights of the level.
+  double Energy = 0;
+  double AverageError = 0; ///< E_ave, mean of f^2 over the points; finest level only, as Energy
+  double MaximumError = 0; ///< E_max, max |f| over the points
+  double Seconds = 0;
+};
+
+/// A level before it is solved.
+template <int Dim>
+struct Level
+{
+  int Coarsening; ///< halvings below the finest
+  Lattice<Dim> Grid;
+  bool Dense;
+  Samples<Dim> Data;
+  Samples<Dim> Unclustered; ///< the points that Data stand for; empty if these are the points
+
+  const Samples<Dim>& points() const
+  {
+    return this->Unclustered.empty() ? this->Data : this->Unclustered;
+  }
+
+  Index<Dim> cellOf(const Sample<Dim>& sample) const
+  {
+    Index<Dim> cell;
+    for (int a = 0; a < Dim; ++a)
+    {
+      const auto at =
+        static_cast<std::int64_t>(std::floor(std::ldexp(sample.Position[a], -this->Coarsening)));
+      cell[a] = std::min(std::max<std::int64_t>(at, 0), this->Grid.cells(a) - 1);
+    }
+    return cell;
+  }
+};
+
+/**
+ * The levels of a fit, coarse to fine: spans halve upwards as ceil(n / 2) from the same corner.
+ *
+ * @param points  sorted; the finest level has them all, unless they are so many that clusters in
+ *                sub-cells say the same
+ */
+template <int Dim>
+std::vector<Level<Dim>> makeLevels(
+  const Lattice<Dim>& lattice, Samples<Dim> points, const HierarchicalOptions& options);
+
+/// What a level sees of the data of a finer one.
+template <int Dim>
+Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening);
+
+/// The bands of the levels, zero.
+template <int Dim>
+std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels);
+
+/// Number of knot cells with data.
+template <int Dim>
+double occupiedCells(const Level<Dim>& level);
+
+/// Solves level @a l from its predecessor.
+///
+/// @param smoothing  length, see HierarchicalOptions; 0: none
+template <int Dim>
+LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
+  std::vector<BrickLattice<Dim>>& bricks, std::size_t l, double smoothing,
+  const HierarchicalOptions& options, int threads);
+
+/// f and its gradient at samples, (1 + Dim) values each, by a level that covers them.
+template <int Dim>
+std::vector<float> evaluateLevel(
+  const Level<Dim>& level, const BrickLattice<Dim>& bricks, Samples<Dim> samples, int threads);
+}
+
+#endif

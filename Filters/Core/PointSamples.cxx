@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PointSamples.h"
+
+namespace ipia
+{
+namespace
+{
+template <int Dim>
+std::uint64_t mortonKey(const Index<Dim>& i)
+{
+  std::uint64_t key = 0;
+  for (int a = 0; a < Dim; ++a)
+  {
+    // Spreads the bits of one coordinate with gaps for the others.
+    auto v = static_cast<std::uint64_t>(i[a]);
+    if (Dim == 3)
+    {
+      v &= 0x1fffff;
+      v = (v | v << 32) & 0x1f00000000ffff;
+      v = (v | v << 16) & 0x1f0000ff0000ff;
+      v = (v | v << 8) & 0x100f00f00f00f00f;
+      v = (v | v << 4) & 0x10c30c30c30c30c3;
+      v = (v | v << 2) & 0x1249249249249249;
+    }
+    else
+    {
+      v &= 0xffffffff;
+      v = (v | v << 16) & 0x0000ffff0000ffff;
+      v = (v | v << 8) & 0x00ff00ff00ff00ff;
+      v = (v | v << 4) & 0x0f0f0f0f0f0f0f0f;
+      v = (v | v << 2) & 0x3333333333333333;
+      v = (v | v << 1) & 0x5555555555555555;
+    }
+    key |= v << a;
+  }
+  return key;
+}
+}
+
+template <int Dim>
+Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input)
+{
+  const std::int64_t n = input.Positions.cols(), m = input.ExtraPositions.cols();
+  std::vector<std::pair<std::uint64_t, std::int64_t>> order(static_cast<std::size_t>(n + m));
+  const auto positionOf = [&](std::int64_t k) -> Point<Dim>
+  {
+    return (k < n ? input.Positions.col(k) : input.ExtraPositions.col(k - n))
+      .cwiseQuotient(lattice.Spacing);
+  };
+  for (std::int64_t k = 0; k < n + m; ++k)
+  {
+    const Point<Dim> u = positionOf(k);
+    Index<Dim> subCell;
+    for (int a = 0; a < Dim; ++a)
+    {
+      const std::int64_t last = (lattice.cells(a) << SubCellBits) - 1;
+      const auto at = static_cast<std::int64_t>(std::floor(u[a] * (1 << SubCellBits)));
+      subCell[a] = std::min(std::max<std::int64_t>(at, 0), last);
+    }
+    order[static_cast<std::size_t>(k)] = { mortonKey<Dim>(subCell), k };
+  }
+  std::sort(order.begin(), order.end());
+  Samples<Dim> samples;
+  samples.reserve(order.size());
+  for (const auto& entry : order)
+  {
+    const std::int64_t k = entry.second;
+    Sample<Dim> sample;
+    sample.Key = entry.first;
+    sample.Position = positionOf(k);
+    const bool extra = k >= n;
+    sample.Normal.setZero();
+    sample.Fairing = 1;
+    if (!extra)
+    {
+      sample.Normal = input.Normals.col(k).template cast<float>();
+      sample.Fairing =
+        input.LocalFairing.size() == 0 ? 1.F : static_cast<float>(input.LocalFairing[k]);
+    }
+    sample.HasNormal = !sample.Normal.isZero(0);
+    sample.IsExtra = extra;
+    sample.Value = extra ? static_cast<float>(input.ExtraValues[k - n]) : 0.F;
+    const Vector& weights = extra ? input.ExtraWeights : input.Weights;
+    sample.Weight = weights.size() == 0 ? 1.F : static_cast<float>(weights[extra ? k - n : k]);
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+template <int Dim>
+Samples<Dim> cluster(const Samples<Dim>& samples, int halvings)
+{
+  Samples<Dim> clusters;
+  const int shift = Dim * halvings;
+  for (std::size_t k = 0; k < samples.size();)
+  {
+    Sample<Dim> mean = samples[k];
+    std::size_t end = k;
+    Point<Dim> position = Point<Dim>::Zero(), plain = position, normal = position;
+    double count = 0, weight = 0, value = 0, fairing = 0;
+    mean.HasNormal = false;
+    for (; end < samples.size() && samples[end].Key >> shift == samples[k].Key >> shift; ++end)
+    {
+      const Sample<Dim>& s = samples[end];
+      const double w = s.Weight;
+      position += w * s.Position;
+      normal += w * s.Normal.template cast<double>();
+      value += w * s.Value;
+      fairing += w * s.Fairing;
+      weight += w;
+      mean.HasNormal = mean.HasNormal || s.HasNormal;
+      plain += s.Position;
+      ++count;
+    }
+    if (end > k + 1)
+    {
+      mean.Weight = static_cast<float>(weight);
+      mean.Position = weight > 0 ? Point<Dim>(position / weight) : Point<Dim>(plain / count);
+      const double share = weight > 0 ? 1 / weight : 0.0;
+      mean.Normal = (share * normal).template cast<float>();
+      mean.Value = static_cast<float>(share * value);
+      mean.Fairing = weight > 0 ? static_cast<float>(share * fairing) : 1.F;
+    }
+    else
+    {
+      mean.HasNormal = samples[k].HasNormal;
+    }
+    clusters.push_back(mean);
+    k = end;
+  }
+  return clusters;
+}
+
+template Samples<2> sortedSamples<2>(const Lattice<2>&, const HermiteInput<2>&);
+template Samples<3> sortedSamples<3>(const Lattice<3>&, const HermiteInput<3>&);
+template Samples<2> cluster<2>(const Samples<2>&, int);
+template Samples<3> cluster<3>(const Samples<3>&, int);
+}
