@@ -175,10 +175,49 @@ private:
   vtkNew<vtkFlyingEdges3D> Contour;
 };
 
-/// Joins the parts: vertices on the same edge become one.
-void join(const std::vector<PartSurface>& parts, const Placement<3>& place, int pointType,
+/// Sets of vertices that triangles connect.
+class ConnectedSets
+{
+public:
+  void add() { this->Parent.push_back(static_cast<vtkIdType>(this->Parent.size())); }
+
+  void unite(vtkIdType a, vtkIdType b)
+  {
+    a = this->root(a);
+    b = this->root(b);
+    this->Parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+
+  int count() const
+  {
+    int sets = 0;
+    for (std::size_t k = 0; k < this->Parent.size(); ++k)
+    {
+      sets += this->Parent[k] == static_cast<vtkIdType>(k);
+    }
+    return sets;
+  }
+
+private:
+  vtkIdType root(vtkIdType a)
+  {
+    while (this->Parent[static_cast<std::size_t>(a)] != a)
+    {
+      vtkIdType& parent = this->Parent[static_cast<std::size_t>(a)];
+      parent = this->Parent[static_cast<std::size_t>(parent)];
+      a = parent;
+    }
+    return a;
+  }
+
+  std::vector<vtkIdType> Parent;
+};
+
+/// Joins the parts: vertices on the same edge become one. Returns the number of components.
+int join(const std::vector<PartSurface>& parts, const Placement<3>& place, int pointType,
   vtkPolyData* surface)
 {
+  ConnectedSets components;
   vtkNew<vtkPoints> points;
   points->SetDataType(pointType);
   vtkNew<vtkFloatArray> normals;
@@ -213,6 +252,7 @@ void join(const std::vector<PartSurface>& parts, const Placement<3>& place, int 
         points->InsertNextPoint(
           place.Origin[0] + x[0], place.Origin[1] + x[1], place.Origin[2] + x[2]);
         normals->InsertNextTuple(part.Normals[k].data());
+        components.add();
       }
     }
     for (std::size_t t = 0; t < part.Triangles.size(); t += 3)
@@ -221,11 +261,14 @@ void join(const std::vector<PartSurface>& parts, const Placement<3>& place, int 
         ids[static_cast<std::size_t>(part.Triangles[t + 1])],
         ids[static_cast<std::size_t>(part.Triangles[t + 2])] };
       triangles->InsertNextCell(3, corners);
+      components.unite(corners[0], corners[1]);
+      components.unite(corners[0], corners[2]);
     }
   }
   surface->SetPoints(points);
   surface->SetPolys(triangles);
   surface->GetPointData()->SetNormals(normals);
+  return components.count();
 }
 }
 
@@ -240,8 +283,9 @@ double NewtonStep::along(double f, double slope) const
 }
 
 bool contourBricks(const BrickSpline<3>& function, const Placement<3>& place, int pointType,
-  const ProgressCallback& progress, vtkPolyData* surface)
+  const ProgressCallback& progress, vtkPolyData* surface, int& components)
 {
+  components = 0;
   surface->Initialize();
   const int threads = resolveThreads(0);
   const std::vector<Block> parts = function.zeroSetParts();
@@ -280,7 +324,7 @@ bool contourBricks(const BrickSpline<3>& function, const Placement<3>& place, in
   {
     return false;
   }
-  join(surfaces, place, pointType, surface);
+  components = join(surfaces, place, pointType, surface);
   return true;
 }
 }

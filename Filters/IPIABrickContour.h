@@ -30,11 +30,12 @@ struct NewtonStep
  * after one Newton step and normals along the gradient. Blocks are shared among threads; the result
  * does not depend on their number.
  *
- * @param pointType  VTK_FLOAT or VTK_DOUBLE
+ * @param pointType   VTK_FLOAT or VTK_DOUBLE
+ * @param components  their number is returned here
  * @return false if the callback aborted; the surface is then empty
  */
 bool contourBricks(const BrickSpline<3>& function, const Placement<3>& place, int pointType,
-  const ProgressCallback& progress, vtkPolyData* surface);
+  const ProgressCallback& progress, vtkPolyData* surface, int& components);
 }
 
 #endif

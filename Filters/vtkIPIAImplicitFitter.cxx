@@ -709,11 +709,11 @@ bool vtkIPIAImplicitFitter::IsInBricks() const
   return this->State->Spatial && !this->State->Spatial->Function;
 }
 
-bool vtkIPIAImplicitFitter::ContourBricks(
-  int pointType, const std::function<bool(double)>& progress, vtkPolyData* surface) const
+bool vtkIPIAImplicitFitter::ContourBricks(int pointType,
+  const std::function<bool(double)>& progress, vtkPolyData* surface, int& components) const
 {
   const ipia::FitSolution<3>& fit = *this->State->Spatial;
-  return ipia::contourBricks(*fit.Bricks, fit.Place, pointType, progress, surface);
+  return ipia::contourBricks(*fit.Bricks, fit.Place, pointType, progress, surface, components);
 }
 
 const std::vector<std::array<double, 3>>& vtkIPIAImplicitFitter::FittedPositions() const

@@ -428,8 +428,8 @@ private:
   friend class vtkIPIASurfaceReconstruction;
   void UpdateFunctionOnly();
   bool IsInBricks() const;
-  bool ContourBricks(
-    int pointType, const std::function<bool(double)>& progress, vtkPolyData* surface) const;
+  bool ContourBricks(int pointType, const std::function<bool(double)>& progress,
+    vtkPolyData* surface, int& components) const;
   const std::vector<std::array<double, 3>>& FittedPositions() const;
 
   ipia::FitParameters Parameters() const;

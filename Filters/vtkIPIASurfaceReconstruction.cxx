@@ -142,12 +142,14 @@ int vtkIPIASurfaceReconstruction::RequestData(
   }
   this->Fitter->UpdateFunctionOnly();
   bool done = this->Fitter->GetImplicitFunction()->HasControlLattice();
+  int components = 2; // or more, as far as one knows
   if (done)
   {
     if (this->Fitter->IsInBricks())
     {
       done = this->Fitter->ContourBricks(
-        this->PointType(), [this](double share) { return this->ReportProgress(share); }, surface);
+        this->PointType(), [this](double share) { return this->ReportProgress(share); }, surface,
+        components);
     }
     else
     {
@@ -155,7 +157,7 @@ int vtkIPIASurfaceReconstruction::RequestData(
     }
     surface->GetFieldData()->ShallowCopy(this->Fitter->GetOutput()->GetFieldData());
   }
-  if (done && this->ComponentFilter)
+  if (done && this->ComponentFilter && components > 1)
   {
     this->LeaveOutComponents(surface);
   }

@@ -26,7 +26,7 @@ struct HierarchicalOptions
   double DenseMembrane = 0.01;  ///< tau_1 of the dense levels
   double DenseThinPlate = 1e-3; ///< tau_2 of the dense levels
   double BandMembrane = 0;      ///< tau_1 of the others
-  double BandThinPlate = 1e-4;  ///< tau_2 of the others
+  double BandThinPlate = 5e-5;  ///< tau_2 of the others
   int DenseIterations = 20;
   double DenseTolerance = 1e-5;
   int BandIterations = 12;
