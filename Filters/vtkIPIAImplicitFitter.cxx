@@ -361,8 +361,13 @@ bool vtkIPIAImplicitFitter::ReportProgress(double share)
 template <int Dim>
 bool vtkIPIAImplicitFitter::FitInDimension()
 {
-  const auto progress = [this](double share)
-  { return this->ReportProgress(ProgressOfRows + (ProgressOfFit - ProgressOfRows) * share); };
+  // Noisy data are fitted again with smoothing; progress stands still until that catches up.
+  double farthest = 0;
+  const auto progress = [this, &farthest](double share)
+  {
+    farthest = std::max(farthest, share);
+    return this->ReportProgress(ProgressOfRows + (ProgressOfFit - ProgressOfRows) * farthest);
+  };
   auto& slot = this->State->Slot<Dim>();
   slot = std::make_unique<ipia::FitSolution<Dim>>(
     ipia::solve<Dim>(*this->State->Current, this->Parameters(), progress));
