@@ -45,6 +45,60 @@ constexpr double LeastShareOfData = 0.02;
 /// Rounding to float shows beyond this share of the knot spacing.
 constexpr double VisibleRounding = 1e-3;
 constexpr double FloatRounding = 6e-8;
+/// Points of a polyline, the most that vtkStripper takes; it leaves longer loops open.
+constexpr int LongestPolyline = 100000;
+
+/// The zero set of an image in space, its triangles facing towards f > 0.
+void contourInSpace(vtkImageData* image, vtkPolyData* surface)
+{
+  vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputData(image);
+  contour->SetValue(0, 0);
+  contour->ComputeNormalsOff();
+  contour->ComputeScalarsOff();
+  // Its triangles face towards smaller f.
+  vtkNew<vtkReverseSense> outwards;
+  outwards->SetInputConnection(contour->GetOutputPort());
+  outwards->Update();
+  surface->ShallowCopy(outwards->GetOutput());
+}
+
+/// The zero set of an image of one slice, as polylines.
+void contourInPlane(vtkImageData* image, vtkPolyData* curve)
+{
+  const int* n = image->GetDimensions();
+  const int across = n[2] == 1 ? 2 : n[1] == 1 ? 1 : 0;
+  const int first = across == 0 ? 1 : 0, second = across == 2 ? 1 : 2;
+  // vtkFlyingEdges2D puts every curve across z: give it an image there, and turn the curve back.
+  vtkNew<vtkImageData> flat;
+  flat->SetDimensions(n[first], n[second], 1);
+  flat->SetOrigin(image->GetOrigin()[first], image->GetOrigin()[second], 0);
+  flat->SetSpacing(image->GetSpacing()[first], image->GetSpacing()[second], 1);
+  flat->GetPointData()->SetScalars(image->GetPointData()->GetScalars());
+  vtkNew<vtkFlyingEdges2D> contour;
+  contour->SetInputData(flat);
+  contour->SetValue(0, 0);
+  contour->ComputeScalarsOff();
+  vtkNew<vtkStripper> polylines;
+  polylines->SetInputConnection(contour->GetOutputPort());
+  polylines->SetMaximumLength(LongestPolyline);
+  polylines->JoinContiguousSegmentsOn();
+  polylines->Update();
+  curve->ShallowCopy(polylines->GetOutput());
+
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(curve->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double from[3], to[3];
+    curve->GetPoint(i, from);
+    to[first] = from[0];
+    to[second] = from[1];
+    to[across] = image->GetOrigin()[across];
+    points->SetPoint(i, to);
+  }
+  curve->SetPoints(points);
+}
 }
 
 vtkIPIASurfaceReconstruction::vtkIPIASurfaceReconstruction()
@@ -159,30 +213,13 @@ int vtkIPIASurfaceReconstruction::RequestData(
     vtkNew<vtkImageData> image;
     image->ShallowCopy(sampled);
     image->SetOrigin(none);
-    vtkNew<vtkFlyingEdges3D> contour3D;
-    vtkNew<vtkFlyingEdges2D> contour2D;
-    vtkNew<vtkReverseSense> outwards;
-    vtkNew<vtkStripper> polylines;
     if (sampled->GetDataDimension() == 3)
     {
-      contour3D->SetInputData(image);
-      contour3D->SetValue(0, 0);
-      contour3D->ComputeNormalsOff();
-      contour3D->ComputeScalarsOff();
-      // Its triangles face towards smaller f.
-      outwards->SetInputConnection(contour3D->GetOutputPort());
-      outwards->Update();
-      surface->ShallowCopy(outwards->GetOutput());
+      contourInSpace(image, surface);
     }
     else
     {
-      contour2D->SetInputData(image);
-      contour2D->SetValue(0, 0);
-      contour2D->ComputeScalarsOff();
-      polylines->SetInputConnection(contour2D->GetOutputPort());
-      polylines->JoinContiguousSegmentsOn();
-      polylines->Update();
-      surface->ShallowCopy(polylines->GetOutput());
+      contourInPlane(image, surface);
     }
     surface->GetFieldData()->ShallowCopy(sampled->GetFieldData());
     this->UpdateProgress((1 + ProgressOfFit) / 2);
