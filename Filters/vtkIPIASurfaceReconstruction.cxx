@@ -154,17 +154,22 @@ int vtkIPIASurfaceReconstruction::FillInputPortInformation(int port, vtkInformat
   return 1;
 }
 
+bool vtkIPIASurfaceReconstruction::ReportProgress(double share)
+{
+  this->UpdateProgress(share);
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  return !this->CheckAbort();
+#else
+  return !this->GetAbortExecute();
+#endif
+}
+
 void vtkIPIASurfaceReconstruction::ForwardEvent(vtkObject*, unsigned long event, void* data)
 {
   if (event == vtkCommand::ProgressEvent)
   {
-    this->UpdateProgress(ProgressOfFit * *static_cast<double*>(data));
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-    const bool aborted = this->CheckAbort();
-#else
-    const bool aborted = this->GetAbortExecute() != 0;
-#endif
-    this->Fitter->SetAbortExecute(aborted ? 1 : 0);
+    const bool goOn = this->ReportProgress(ProgressOfFit * *static_cast<double*>(data));
+    this->Fitter->SetAbortExecute(goOn ? 0 : 1);
   }
   else if (this->HasObserver(event))
   {
@@ -203,8 +208,7 @@ int vtkIPIASurfaceReconstruction::RequestData(
   }
   this->Fitter->Update();
   vtkImageData* sampled = this->Fitter->GetOutput();
-  const bool fitted = sampled->GetNumberOfPoints() > 0;
-  if (fitted)
+  if (sampled->GetNumberOfPoints() > 0) // neither refused nor aborted
   {
     // Contour filters write float points: contour at the origin, and move in double.
     double origin[3];
@@ -222,17 +226,23 @@ int vtkIPIASurfaceReconstruction::RequestData(
       contourInPlane(image, surface);
     }
     surface->GetFieldData()->ShallowCopy(sampled->GetFieldData());
-    this->UpdateProgress((1 + ProgressOfFit) / 2);
-    this->MoveOntoZeroSet(surface, origin);
-    if (this->ComponentFilter)
+    if (this->ReportProgress((1 + ProgressOfFit) / 2))
     {
-      this->LeaveOutComponents(
-        surface, vtkPolyData::SafeDownCast(this->Fitter->GetOutputDataObject(1)));
+      this->MoveOntoZeroSet(surface, origin);
+      if (this->ComponentFilter)
+      {
+        this->LeaveOutComponents(
+          surface, vtkPolyData::SafeDownCast(this->Fitter->GetOutputDataObject(1)));
+      }
+      this->ReportProgress(1);
+    }
+    else
+    {
+      surface->Initialize();
     }
   }
-  // Neither the input nor the samples are needed any more; the function and the figures stay.
+  // The samples are not needed any more; the function and the figures stay.
   this->Fitter->GetOutputDataObject(0)->Initialize();
-  this->UpdateProgress(1);
   return 1;
 }
 

@@ -99,6 +99,7 @@ private:
   vtkIPIASurfaceReconstruction(const vtkIPIASurfaceReconstruction&) = delete;
   void operator=(const vtkIPIASurfaceReconstruction&) = delete;
 
+  bool ReportProgress(double share);
   void ForwardEvent(vtkObject* caller, unsigned long event, void* data);
   void LeaveOutComponents(vtkPolyData* surface, vtkPolyData* points);
   void MoveOntoZeroSet(vtkPolyData* surface, const double origin[3]);
