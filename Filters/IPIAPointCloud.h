@@ -47,7 +47,8 @@ public:
 
   /// The input as one data set; Ids are the points of it that were taken.
   vtkSmartPointer<vtkPolyData> Source;
-  /// The arrays of normals and weights that were chosen in each block (nullptr: none).
+  /// The arrays of normals and weights that were chosen in each block (nullptr: none), and that of
+  /// the values of extra rows.
   std::vector<vtkDataArray*> ChosenArrays;
   std::vector<vtkIdType> Ids;
   std::vector<std::array<double, 3>> Positions;
