@@ -279,6 +279,19 @@ void TestSizesBeyondMemory(Checks& checks)
     [](auto*, auto* fitter) { fitter->SetPadding(1e12); });
   CheckRefused(checks, "largest Padding", SphereCloud(), "Padding is 1",
     [](auto*, auto* fitter) { fitter->SetPadding(VTK_DOUBLE_MAX); });
+  for (double padding : { 1e300, std::numeric_limits<double>::quiet_NaN() })
+  {
+    CheckRefused(checks, ipiatest::Text("Padding ", padding, " with GridSize"), SphereCloud(),
+      "Padding is ",
+      [=](auto*, auto* fitter)
+      {
+        fitter->SetPadding(padding);
+        fitter->SetGridSize(10, 10, 10);
+      });
+  }
+  CheckRefused(checks, "bounds 1e300", SphereCloud(), "times as long as the points",
+    [](auto*, auto* fitter)
+    { fitter->SetModelBounds(-1e300, 1e300, -1e300, 1e300, -1e300, 1e300); });
 }
 
 void TestBounds(Checks& checks)
@@ -292,6 +305,38 @@ void TestBounds(Checks& checks)
     [](auto*, auto* fitter) { fitter->SetModelBounds(-2, 2, -2, 2, 1, 1); });
   CheckRefused(checks, "infinite bounds", SphereCloud(), "empty or not finite along axis 0",
     [](auto*, auto* fitter) { fitter->SetModelBounds(-HUGE_VAL, 2, -2, 2, -2, 2); });
+}
+
+/// What is left in the bounds cannot be fitted.
+void TestLittleInBounds(Checks& checks)
+{
+  const auto bounds = [](auto*, auto* fitter) { fitter->SetModelBounds(4, 6, 4, 6, 4, 6); };
+  OrientedPoints cloud = ipiatest::SpherePoints(600);
+  cloud.Add({ 5, 5, 5 }, { 0, 0, 1 });
+  CheckRefused(
+    checks, "bounds with one point", ToPolyData(cloud), "Only one point lies in", bounds);
+  cloud.Append(ipiatest::SpherePoints(20, 0.5, { 5, 5, 5 }));
+  auto zero = ToPolyData(cloud);
+  auto weightless = ToPolyData(cloud);
+  vtkNew<vtkDoubleArray> weights;
+  weights->SetName("Weight");
+  for (vtkIdType i = 0; i < 621; ++i)
+  {
+    weights->InsertNextValue(i < 600);
+    if (i >= 600)
+    {
+      zero->GetPointData()->GetNormals()->SetTuple3(i, 0, 0, 0);
+    }
+  }
+  weightless->GetPointData()->AddArray(weights);
+  CheckRefused(
+    checks, "bounds without normals", zero, "All normals are zero or not finite in", bounds);
+  CheckRefused(checks, "bounds without weights", weightless, "All row weights are zero in",
+    [&](auto* algorithm, auto* fitter)
+    {
+      bounds(algorithm, fitter);
+      ChooseWeights(algorithm, fitter);
+    });
 }
 
 void TestDimension(Checks& checks)
@@ -365,6 +410,7 @@ int TestImplicitFitterRefusals(int, char*[])
   TestSampleDimensions(checks);
   TestSizesBeyondMemory(checks);
   TestBounds(checks);
+  TestLittleInBounds(checks);
   TestDimension(checks);
   TestExtraRowsWithoutValues(checks);
   TestDivergence(checks);
