@@ -446,7 +446,7 @@ bool vtkIPIAImplicitFitter::Fit()
     add(left.InvalidWeights, "point(s) with a negative or non-finite weight");
     add(left.NonFiniteExtraRows, "non-finite extra row(s)");
     add(problem.OutsideBounds, "point(s) outside ModelBounds");
-    add(left.InvalidNormals, "zero or non-finite normal(s) with their offset rows");
+    add(left.InvalidNormals, "zero or non-finite normal(s) with the rows they would give");
     vtkWarningMacro("Left out of the fit: " << parts << ".");
   }
   const bool done = problem.Dimension == 2 ? this->FitInDimension<2>() : this->FitInDimension<3>();
