@@ -55,26 +55,24 @@ public:
 
   void append(const Block& block, PartSurface& surface)
   {
-    const ImplicitSpline<3> f = this->Function.blockFunction(block);
-    const Lattice<3>& lattice = f.lattice();
+    const BrickSpline<3>::BlockFunction f = this->Function.blockFunction(block);
     AxisPositions<3> positions;
     std::array<int, 3> dimensions;
     std::int64_t size = 1;
-    for (int a = 0; a < 3; ++a)
+    for (std::size_t a = 0; a < 3; ++a)
     {
-      const auto i = static_cast<std::size_t>(a);
-      for (std::int64_t k = 0; k <= 2 * lattice.cells(a); ++k)
+      for (std::int64_t k = 2 * f.Begin[a]; k <= 2 * f.End[a]; ++k)
       {
-        positions[i].push_back(0.5 * static_cast<double>(k) * lattice.Spacing[a]);
+        positions[a].push_back(0.5 * static_cast<double>(k));
       }
-      dimensions[i] = static_cast<int>(positions[i].size());
-      size *= dimensions[i];
+      dimensions[a] = static_cast<int>(positions[a].size());
+      size *= dimensions[a];
     }
     this->Image->SetDimensions(dimensions.data());
     this->Values->SetNumberOfValues(size);
     float* values = this->Values->GetPointer(0);
-    f.sample(positions, values, 1);
-    const auto least = static_cast<float>(LeastSample * lattice.Spacing.mean());
+    f.Spline.sample(positions, values, 1);
+    const auto least = static_cast<float>(LeastSample * this->Function.lattice().Spacing.mean());
     bool negative = false, other = false;
     for (std::int64_t k = 0; k < size; ++k)
     {
@@ -105,32 +103,40 @@ private:
 
   static Point<3> halfSpacing(const Lattice<3>& lattice) { return 0.5 * lattice.Spacing; }
 
-  void appendVertices(const Block& block, const ImplicitSpline<3>& f, PartSurface& surface)
+  void appendVertices(
+    const Block& block, const BrickSpline<3>::BlockFunction& f, PartSurface& surface)
   {
-    const Lattice<3>& lattice = f.lattice();
+    const Point<3>& spacing = this->Function.lattice().Spacing;
     vtkPolyData* found = this->Contour->GetOutput();
     vtkPoints* points = found->GetPoints();
     const auto first = static_cast<vtkIdType>(surface.Points.size());
-    Point<3> corner;
+    Point<3> corner, begin; // in cells
     for (int a = 0; a < 3; ++a)
     {
-      corner[a] = static_cast<double>(block.Cell[static_cast<std::size_t>(a)]) * lattice.Spacing[a];
+      corner[a] = static_cast<double>(f.Corner[static_cast<std::size_t>(a)]);
+      begin[a] = static_cast<double>(f.Begin[static_cast<std::size_t>(a)]);
     }
     for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
     {
-      Point<3> u, x, g; // u in samples of the block
+      Point<3> u, g; // u in samples of the block
       points->GetPoint(i, u.data());
-      surface.Edges.push_back(this->edgeOf(block, lattice, u));
-      x = 0.5 * u.cwiseProduct(lattice.Spacing);
-      const double value = f.valueAndGradient(x, g);
+      surface.Edges.push_back(this->edgeOf(block, u));
+      Point<3> x = begin + 0.5 * u;
+      const auto valueAndGradient = [&]
+      {
+        const double value = f.Spline.valueAndGradient(x, g);
+        g = g.cwiseQuotient(spacing);
+        return value;
+      };
+      const double value = valueAndGradient();
       const double slope = g.norm();
       const double step = this->Newton.along(value, slope);
       if (step != 0)
       {
-        x += step / slope * g;
-        f.valueAndGradient(x, g);
+        x += (step / slope * g).cwiseQuotient(spacing);
+        valueAndGradient();
       }
-      surface.Points.push_back(corner + x);
+      surface.Points.push_back((corner + x).cwiseProduct(spacing));
       surface.Normals.push_back(g.normalized());
     }
     vtkCellArray* triangles = found->GetPolys();
@@ -146,7 +152,7 @@ private:
   }
 
   /// Identifies the edge of the whole grid that a vertex on the border of a block lies on.
-  std::int64_t edgeOf(const Block& block, const Lattice<3>& lattice, const Point<3>& u) const
+  std::int64_t edgeOf(const Block& block, const Point<3>& u) const
   {
     bool border = false;
     std::int64_t axis = 0, index = 0;
@@ -160,7 +166,8 @@ private:
       }
       else
       {
-        border = border || below == 0 || below == 2. * static_cast<double>(lattice.cells(a));
+        // At its upper end a block may be cut off by the domain, where nothing is to be joined.
+        border = border || below == 0 || below == 2. * BrickSpline<3>::BlockCells;
       }
       index = index * this->Samples[i] + 2 * block.Cell[i] + static_cast<std::int64_t>(below);
     }

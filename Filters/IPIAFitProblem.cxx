@@ -170,12 +170,11 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
   PlacedLattice<Dim> placed;
   if (automatic)
   {
-    const bool anySize = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
     const double spacings = longest * (1 + 2 * parameters.Padding) / h;
-    if (!anySize && !(spacings < VTK_INT_MAX))
+    if (!(spacings < VTK_INT_MAX))
     {
       this->Refusal = text("Padding is ", parameters.Padding, ", which would take ", spacings,
-        " knot spacings along an axis. Reduce Padding or give GridSize.");
+        " knot spacings along an axis. Reduce Padding.");
       return;
     }
     placed = latticeAround<Dim>(box, parameters.Padding, size, h);
@@ -191,6 +190,12 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
           "]. Give all axes a positive length, or leave all unset.");
         return;
       }
+    }
+    if (!(model.sides().maxCoeff() < VTK_INT_MAX * longest))
+    {
+      this->Refusal = text("ModelBounds are ", model.sides().maxCoeff() / longest,
+        " times as long as the points, which then lie in one knot cell. Give smaller bounds.");
+      return;
     }
     // A box much larger than its points does not get more than MostSpacings of its own.
     placed = latticeOn<Dim>(model, size, std::max(h, model.sides().maxCoeff() / MostSpacings));
@@ -341,10 +346,25 @@ void FitProblem::DropPointsOutside()
   this->OutsideBounds += static_cast<vtkIdType>(cloud.ExtraPositions.size() - keptRows);
   cloud.ExtraPositions.resize(keptRows);
   cloud.ExtraValues.resize(keptRows);
+  const auto none = [](const auto& values, auto isUsable)
+  { return std::none_of(values.begin(), values.end(), isUsable); };
+  const std::string where =
+    text("the ModelBounds from ", triple(this->Origin), " to ", triple(this->Upper), ".");
   if (kept == 0)
   {
-    this->Refusal = text("None of the points lies in the ModelBounds from ", triple(this->Origin),
-      " to ", triple(this->Upper), ".");
+    this->Refusal = "None of the points lies in " + where;
+  }
+  else if (kept == 1)
+  {
+    this->Refusal = "Only one point lies in " + where + " At least two are needed.";
+  }
+  else if (none(cloud.Normals, [](const auto& n) { return n[0] != 0 || n[1] != 0 || n[2] != 0; }))
+  {
+    this->Refusal = "All normals are zero or not finite in " + where;
+  }
+  else if (!cloud.Weights.empty() && none(cloud.Weights, [](double w) { return w > 0; }))
+  {
+    this->Refusal = "All row weights are zero in " + where;
   }
 }
 }

@@ -6,6 +6,7 @@
 #include "vtkIPIAImplicitFitter.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ipia
 {
@@ -217,6 +218,18 @@ HermiteInput<Dim> hermiteInput(const Lattice<Dim>& lattice, const FitProblem& pr
   rows.ExtraPositions.conservativeResize(Dim, used);
   rows.ExtraValues.conservativeResize(used);
   rows.ExtraWeights.conservativeResize(used);
+
+  // Only ratios of weights count. A power of two brings the largest near 1, as the hierarchy
+  // computes in single precision.
+  const double largest = std::max(rows.Weights.size() ? rows.Weights.maxCoeff() : 1.0,
+    used > 0 ? rows.ExtraWeights.maxCoeff() : 0.0);
+  if (rows.Weights.size() && largest > 0)
+  {
+    const int exponent = std::ilogb(largest);
+    const auto scaled = [exponent](double w) { return std::ldexp(w, -exponent); };
+    rows.Weights = rows.Weights.unaryExpr(scaled).eval();
+    rows.ExtraWeights = rows.ExtraWeights.unaryExpr(scaled).eval();
+  }
   return rows;
 }
 

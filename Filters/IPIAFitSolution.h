@@ -26,7 +26,7 @@ struct FitSolution
   double Oscillation = 0;     ///< of a single level with offset rows, 0 otherwise
   double OffsetDistance = 0;  ///< of the offset rows, 0 without
   int NumberOfLevels = 1;     ///< of the hierarchy
-  double Noise = 0;           ///< in knot spacings of the level it was measured on
+  double Noise = 0;           ///< see HierarchicalResult
   double SmoothingLength = 0; ///< in world units
   std::string Error;          ///< why there is no result; empty otherwise, or if it was aborted
   std::string Warning;        ///< what the user should know about the result

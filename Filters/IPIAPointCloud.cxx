@@ -247,6 +247,7 @@ void PointCloud::gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraR
     return;
   }
   vtkDataArray* values = choose(ExtraValuesIndex, extraRows);
+  this->ChosenArrays.push_back(values);
   if (!values || values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() != n)
   {
     this->Refusal =

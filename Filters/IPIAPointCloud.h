@@ -49,7 +49,7 @@ public:
   /// The input as one data set; Ids are the points of it that were taken.
   vtkSmartPointer<vtkPolyData> Source;
   /// The arrays of normals, weights and local fairing weights that were chosen in each block
-  /// (nullptr: none).
+  /// (nullptr: none), and that of the values of extra rows.
   std::vector<vtkDataArray*> ChosenArrays;
   std::vector<vtkIdType> Ids;
   std::vector<std::array<double, 3>> Positions;

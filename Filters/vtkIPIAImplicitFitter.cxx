@@ -135,6 +135,8 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
     vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
   this->SetInputArrayToProcess(ipia::PointCloud::ExtraValuesIndex, 1, 0,
     vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  // Makes the index known, without an array.
+  this->GetInputArrayInformation(ipia::PointCloud::LocalFairingIndex);
 }
 
 vtkIPIAImplicitFitter::~vtkIPIAImplicitFitter() = default;
@@ -365,8 +367,13 @@ bool vtkIPIAImplicitFitter::ReportProgress(double share)
 template <int Dim>
 bool vtkIPIAImplicitFitter::FitInDimension()
 {
-  const auto progress = [this](double share)
-  { return this->ReportProgress(ProgressOfRows + (ProgressOfFit - ProgressOfRows) * share); };
+  // Noisy data are fitted again with smoothing; progress stands still until that catches up.
+  double farthest = 0;
+  const auto progress = [this, &farthest](double share)
+  {
+    farthest = std::max(farthest, share);
+    return this->ReportProgress(ProgressOfRows + (ProgressOfFit - ProgressOfRows) * farthest);
+  };
   auto& slot = this->State->Slot<Dim>();
   slot = std::make_unique<ipia::FitSolution<Dim>>(
     ipia::solve<Dim>(*this->State->Current, this->Parameters(), progress));
@@ -449,7 +456,7 @@ bool vtkIPIAImplicitFitter::Fit()
     add(left.InvalidWeights, "point(s) with a negative or non-finite weight");
     add(left.NonFiniteExtraRows, "non-finite extra row(s)");
     add(problem.OutsideBounds, "point(s) outside ModelBounds");
-    add(left.InvalidNormals, "zero or non-finite normal(s) with their offset rows");
+    add(left.InvalidNormals, "zero or non-finite normal(s) with the rows they would give");
     vtkWarningMacro("Left out of the fit: " << parts << ".");
   }
   const bool done = problem.Dimension == 2 ? this->FitInDimension<2>() : this->FitInDimension<3>();
@@ -659,7 +666,12 @@ int vtkIPIAImplicitFitter::RequestData(
     vtkErrorMacro(<< problem.Refusal);
     return 1;
   }
-  if (!this->ReportProgress(0) || !this->Fit())
+  if (!this->ReportProgress(0))
+  {
+    this->DiscardFit();
+    return 1;
+  }
+  if (!this->Fit())
   {
     return 1;
   }

@@ -10,7 +10,7 @@
  * @code
  *   vtkNew<vtkIPIAImplicitFitter> fitter;
  *   fitter->SetInputConnection(points->GetOutputPort()); // vtkPolyData with point normals
- *   vtkNew<vtkFlyingEdges3D> surface;                    // vtkFlyingEdges2D in the plane
+ *   vtkNew<vtkFlyingEdges3D> surface;                    // vtkContourFilter in the plane
  *   surface->SetInputConnection(fitter->GetOutputPort());
  *   surface->SetValue(0, 0.0);
  *   surface->Update();
@@ -67,13 +67,14 @@
  * ### Two dimensions
  * If all points lie in a plane perpendicular to an axis and their normals in that plane, f is a
  * bicubic spline in that plane and the image has one slice. Otherwise the fit is tricubic.
+ * vtkContourFilter contours any slice; vtkFlyingEdges2D of VTK 9.1 takes each for one across z.
  *
  * ### Errors
  * Refused with one error and empty outputs: no points, one point, all points equal or (in 3-D) on a
  * line, no or only zero normals, grid sizes below 4, sample dimensions below 2, bounds that are
  * empty or hold no point, a step size that diverges, and sizes that the machine's memory would not
  * hold. Left out with one warning that counts them: non-finite points, weights or extra rows, zero
- * or non-finite normals (their offset rows), points outside ModelBounds. An abort leaves empty
+ * or non-finite normals (their rows), points outside ModelBounds. An abort leaves empty
  * outputs.
  *
  * ### Threads and reproducibility
@@ -254,7 +255,9 @@ public:
   ///@{
   /**
    * Number of lattice levels. 0 (the default): as many as halve the lattice down to 16 cells. 1: a
-   * single one, with offset rows exactly the method of the 2019 paper.
+   * single one, with offset rows exactly the method of the 2019 paper. With fewer than 0 gives, the
+   * coarsest lattice does not carry the sides of the surface into the whole domain, and false
+   * sheets appear far from the data.
    */
   vtkSetClampMacro(NumberOfLevels, int, 0, 20);
   vtkGetMacro(NumberOfLevels, int);
@@ -340,11 +343,15 @@ public:
    * "Get", with the array `ResidualHistory` of ||B^T W r|| / ||B^T W r0|| before the first and
    * after every iteration. All are 0 after a refused fit.
    *
-   * StepSizeUsed is 0 with ConjugateGradient. Energy is E = sum_k w_k r_k^2 over all rows;
+   * StepSizeUsed is 0 with ConjugateGradient. Energy is E = sum_k w_k r_k^2 over all rows, in the
+   * hierarchy with the weights that it gives them on the finest level, of which ResidualHistory is;
    * AverageError and MaximumError are the mean of f^2 and the maximum of |f| at the points;
    * Oscillation is R(C), the sum over coefficients of the squared differences to their axis
    * neighbours, of a single level with offset rows; 0 otherwise. OffsetDistanceUsed is the distance
-   * that was aimed at, before rows were drawn nearer to their points.
+   * that was aimed at, before rows were drawn nearer to their points. NoiseFound is the root mean
+   * square distance (world units) of the points from f = 0 on the finest level that they alone
+   * determine, 0 if they are too sparse for any or FairingWeight is set; SmoothingLengthUsed (world
+   * units) the length below which noise is smoothed away, 0 on clean data.
    */
   vtkGetMacro(NumberOfIterationsUsed, int);
   vtkGetMacro(StepSizeUsed, double);

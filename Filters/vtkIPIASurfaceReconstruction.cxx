@@ -43,6 +43,60 @@ constexpr double LeastShareOfData = 0.02;
 /// Rounding to float shows beyond this share of the knot spacing.
 constexpr double VisibleRounding = 1e-3;
 constexpr double FloatRounding = 6e-8;
+/// Points of a polyline, the most that vtkStripper takes; it leaves longer loops open.
+constexpr int LongestPolyline = 100000;
+
+/// The zero set of an image in space, its triangles facing towards f > 0.
+void contourInSpace(vtkImageData* image, vtkPolyData* surface)
+{
+  vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputData(image);
+  contour->SetValue(0, 0);
+  contour->ComputeNormalsOff();
+  contour->ComputeScalarsOff();
+  // Its triangles face towards smaller f.
+  vtkNew<vtkReverseSense> outwards;
+  outwards->SetInputConnection(contour->GetOutputPort());
+  outwards->Update();
+  surface->ShallowCopy(outwards->GetOutput());
+}
+
+/// The zero set of an image of one slice, as polylines.
+void contourInPlane(vtkImageData* image, vtkPolyData* curve)
+{
+  const int* n = image->GetDimensions();
+  const int across = n[2] == 1 ? 2 : n[1] == 1 ? 1 : 0;
+  const int first = across == 0 ? 1 : 0, second = across == 2 ? 1 : 2;
+  // vtkFlyingEdges2D puts every curve across z: give it an image there, and turn the curve back.
+  vtkNew<vtkImageData> flat;
+  flat->SetDimensions(n[first], n[second], 1);
+  flat->SetOrigin(image->GetOrigin()[first], image->GetOrigin()[second], 0);
+  flat->SetSpacing(image->GetSpacing()[first], image->GetSpacing()[second], 1);
+  flat->GetPointData()->SetScalars(image->GetPointData()->GetScalars());
+  vtkNew<vtkFlyingEdges2D> contour;
+  contour->SetInputData(flat);
+  contour->SetValue(0, 0);
+  contour->ComputeScalarsOff();
+  vtkNew<vtkStripper> polylines;
+  polylines->SetInputConnection(contour->GetOutputPort());
+  polylines->SetMaximumLength(LongestPolyline);
+  polylines->JoinContiguousSegmentsOn();
+  polylines->Update();
+  curve->ShallowCopy(polylines->GetOutput());
+
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(curve->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double from[3], to[3];
+    curve->GetPoint(i, from);
+    to[first] = from[0];
+    to[second] = from[1];
+    to[across] = image->GetOrigin()[across];
+    points->SetPoint(i, to);
+  }
+  curve->SetPoints(points);
+}
 }
 
 vtkIPIASurfaceReconstruction::vtkIPIASurfaceReconstruction()
@@ -98,12 +152,22 @@ int vtkIPIASurfaceReconstruction::FillInputPortInformation(int port, vtkInformat
   return 1;
 }
 
+bool vtkIPIASurfaceReconstruction::ReportProgress(double share)
+{
+  this->UpdateProgress(share);
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  return !this->CheckAbort();
+#else
+  return !this->GetAbortExecute();
+#endif
+}
+
 void vtkIPIASurfaceReconstruction::ForwardEvent(vtkObject*, unsigned long event, void* data)
 {
   if (event == vtkCommand::ProgressEvent)
   {
-    this->UpdateProgress(ProgressOfFit * *static_cast<double*>(data));
-    this->Fitter->SetAbortExecute(this->IsAborted() ? 1 : 0);
+    const bool goOn = this->ReportProgress(ProgressOfFit * *static_cast<double*>(data));
+    this->Fitter->SetAbortExecute(goOn ? 0 : 1);
   }
   else if (this->HasObserver(event))
   {
@@ -143,17 +207,22 @@ int vtkIPIASurfaceReconstruction::RequestData(
   this->Fitter->UpdateFunctionOnly();
   bool done = this->Fitter->GetImplicitFunction()->HasControlLattice();
   int components = 2; // or more, as far as one knows
+  const auto contourProgress = [this](double share)
+  { return this->ReportProgress(ProgressOfFit + (1 - ProgressOfFit) * share); };
   if (done)
   {
     if (this->Fitter->IsInBricks())
     {
-      done = this->Fitter->ContourBricks(
-        this->PointType(), [this](double share) { return this->ReportProgress(share); }, surface,
-        components);
+      done = this->Fitter->ContourBricks(this->PointType(), contourProgress, surface, components);
     }
     else
     {
       this->ContourImage(surface);
+      done = contourProgress(0.5);
+      if (done)
+      {
+        this->MoveOntoZeroSet(surface, this->Fitter->GetOutput());
+      }
     }
     surface->GetFieldData()->ShallowCopy(this->Fitter->GetOutput()->GetFieldData());
   }
@@ -171,21 +240,6 @@ int vtkIPIASurfaceReconstruction::RequestData(
     surface->Initialize();
   }
   return 1;
-}
-
-bool vtkIPIASurfaceReconstruction::ReportProgress(double shareOfContour)
-{
-  this->UpdateProgress(ProgressOfFit + (1 - ProgressOfFit) * shareOfContour);
-  return !this->IsAborted();
-}
-
-bool vtkIPIASurfaceReconstruction::IsAborted()
-{
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-  return this->CheckAbort();
-#else
-  return this->GetAbortExecute() != 0;
-#endif
 }
 
 int vtkIPIASurfaceReconstruction::PointType() const
@@ -215,33 +269,14 @@ void vtkIPIASurfaceReconstruction::ContourImage(vtkPolyData* surface)
   vtkNew<vtkImageData> image;
   image->ShallowCopy(sampled);
   image->SetOrigin(none);
-  vtkNew<vtkFlyingEdges3D> contour3D;
-  vtkNew<vtkFlyingEdges2D> contour2D;
-  vtkNew<vtkReverseSense> outwards;
-  vtkNew<vtkStripper> polylines;
   if (sampled->GetDataDimension() == 3)
   {
-    contour3D->SetInputData(image);
-    contour3D->SetValue(0, 0);
-    contour3D->ComputeNormalsOff();
-    contour3D->ComputeScalarsOff();
-    // Its triangles face towards smaller f.
-    outwards->SetInputConnection(contour3D->GetOutputPort());
-    outwards->Update();
-    surface->ShallowCopy(outwards->GetOutput());
+    contourInSpace(image, surface);
   }
   else
   {
-    contour2D->SetInputData(image);
-    contour2D->SetValue(0, 0);
-    contour2D->ComputeScalarsOff();
-    polylines->SetInputConnection(contour2D->GetOutputPort());
-    polylines->JoinContiguousSegmentsOn();
-    polylines->Update();
-    surface->ShallowCopy(polylines->GetOutput());
+    contourInPlane(image, surface);
   }
-  this->ReportProgress(0.5);
-  this->MoveOntoZeroSet(surface, sampled);
 }
 
 void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled)

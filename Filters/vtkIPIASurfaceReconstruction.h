@@ -104,9 +104,8 @@ private:
   vtkIPIASurfaceReconstruction(const vtkIPIASurfaceReconstruction&) = delete;
   void operator=(const vtkIPIASurfaceReconstruction&) = delete;
 
+  bool ReportProgress(double share);
   void ForwardEvent(vtkObject* caller, unsigned long event, void* data);
-  bool IsAborted();
-  bool ReportProgress(double shareOfContour);
   int PointType() const;
   void ContourImage(vtkPolyData* surface);
   void MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BrickSpline.h"
 
+#include "CubicBasis.h"
 #include "KnotRefinement.h"
 #include "OutsideDomain.h"
 
@@ -50,19 +51,20 @@ std::int64_t flatIndex(const Index<Dim>& i, const Index<Dim>& count)
   return index;
 }
 
-/// Refines one axis of an array: lines of @a from.size() values with the given stride become lines
-/// of @a count, beginning with the fine coefficient that lies on coarse @a offset.
+/// Refines one axis of an array: lines of @a count values with the given stride. The first fine
+/// value is @a margin (1) before the fine one that lies on coarse @a offset + margin.
 void refineAxis(const double* in, double* out, std::int64_t lines, std::int64_t lineLength,
-  std::int64_t before, std::int64_t count, std::int64_t offset)
+  std::int64_t count, std::int64_t offset)
 {
   for (std::int64_t line = 0; line < lines; ++line)
   {
-    const double* from = in + (line * before + offset) * lineLength;
+    const double* from = in + (line * count + offset) * lineLength;
     double* to = out + line * count * lineLength;
     for (std::int64_t i = 0; i < count; ++i, to += lineLength)
     {
-      const double* c = from + i / 2 * lineLength;
-      if (i % 2 == 0)
+      // Fine coefficient i - 1 of the block: an odd one where i is even.
+      const double* c = from + (i + 1) / 2 * lineLength;
+      if (i % 2 == 1)
       {
         for (std::int64_t k = 0; k < lineLength; ++k)
         {
@@ -157,8 +159,9 @@ void BrickSpline<Dim>::readStored(Block& block) const
   Index<Dim> first, end;
   for (int a = 0; a < Dim; ++a)
   {
-    first[a] = block.Cell[a] / BrickWidth;
-    end[a] = std::min((block.Cell[a] + BlockSize - 1) / BrickWidth + 1, bricks.bricksPerAxis()[a]);
+    first[a] = std::max<std::int64_t>(block.Cell[a] - Margin, 0) / BrickWidth;
+    end[a] = std::min(
+      (block.Cell[a] - Margin + BlockSize - 1) / BrickWidth + 1, bricks.bricksPerAxis()[a]);
   }
   forRange<Dim>(first, end,
     [&](const Index<Dim>& position)
@@ -170,22 +173,25 @@ void BrickSpline<Dim>::readStored(Block& block) const
       }
       const float* from =
         bricks.coefficients().data() + static_cast<std::int64_t>(id) * BrickSize<Dim>;
-      // Where the brick lies in the block; it may reach beyond its end.
-      std::int64_t target = 0, stride = 1, width = 0;
+      // What the brick and the block have in common.
+      std::int64_t source = 0, target = 0, stride = 1, brickStride = 1;
       std::array<std::int64_t, 3> count{ 1, 1, 1 };
       for (int a = 0; a < Dim; ++a)
       {
-        const std::int64_t at = position[a] * BrickWidth - block.Cell[a];
-        width = std::min<std::int64_t>(BlockSize - at, BrickWidth);
-        count[static_cast<std::size_t>(a)] = width;
-        target += at * stride;
+        const std::int64_t at = position[a] * BrickWidth - (block.Cell[a] - Margin);
+        const std::int64_t begin = std::max<std::int64_t>(-at, 0);
+        count[static_cast<std::size_t>(a)] =
+          std::min<std::int64_t>(BlockSize - at, BrickWidth) - begin;
+        source += begin * brickStride;
+        target += (at + begin) * stride;
         stride *= BlockSize;
+        brickStride *= BrickWidth;
       }
       for (std::int64_t z = 0; z < count[2]; ++z)
       {
         for (std::int64_t y = 0; y < count[1]; ++y)
         {
-          std::copy_n(from + (z * BrickWidth + y) * BrickWidth, count[0],
+          std::copy_n(from + source + (z * BrickWidth + y) * BrickWidth, count[0],
             block.Coefficients.data() + target + (z * BlockSize + y) * BlockSize);
         }
       }
@@ -200,7 +206,7 @@ bool BrickSpline<Dim>::mayHaveZeros(const Block& block) const
   for (int a = 0; a < Dim; ++a)
   {
     at[a] = block.Cell[a] / BlockCells;
-    size[a] = std::min<std::int64_t>(BlockSize, lattice.Size[a] - block.Cell[a]);
+    size[a] = std::min(BlockCells + Order - 1, lattice.Size[a] - block.Cell[a]);
   }
   if (this->Corrected[block.Level][static_cast<std::size_t>(
         flatIndex<Dim>(at, this->blocksPerAxis(block.Level)))])
@@ -215,7 +221,12 @@ bool BrickSpline<Dim>::mayHaveZeros(const Block& block) const
     {
       Index<Dim> all;
       all.fill(BlockSize);
-      const double* c = block.Coefficients.data() + flatIndex<Dim>(line, all);
+      Index<Dim> first = line;
+      for (int a = 0; a < Dim; ++a)
+      {
+        first[a] += Margin;
+      }
+      const double* c = block.Coefficients.data() + flatIndex<Dim>(first, all);
       for (std::int64_t i = 0; i < size[0]; ++i)
       {
         negative = negative || c[i] < 0;
@@ -254,8 +265,7 @@ std::vector<typename BrickSpline<Dim>::Block> BrickSpline<Dim>::children(const B
       for (int a = 0; a < Dim; ++a)
       {
         std::vector<double>& out = a % 2 == 0 ? first : second;
-        refineAxis(
-          in, out.data(), lines, lineLength, BlockSize, BlockSize, half[a] * BlockCells / 2);
+        refineAxis(in, out.data(), lines, lineLength, BlockSize, half[a] * BlockCells / 2);
         in = out.data();
         lines /= BlockSize;
         lineLength *= BlockSize;
@@ -307,35 +317,37 @@ std::vector<typename BrickSpline<Dim>::Block> BrickSpline<Dim>::zeroSetParts() c
 }
 
 template <int Dim>
-ImplicitSpline<Dim> BrickSpline<Dim>::blockFunction(const Block& block) const
+typename BrickSpline<Dim>::BlockFunction BrickSpline<Dim>::blockFunction(const Block& block) const
 {
+  BlockFunction function;
   Lattice<Dim> local;
-  local.Spacing = this->lattice().Spacing;
-  Index<Dim> end;
-  bool whole = true;
+  local.Spacing.setOnes();
+  Index<Dim> first, end, all;
   for (int a = 0; a < Dim; ++a)
   {
-    local.Size[a] = std::min(BlockSize, this->lattice().Size[a] - block.Cell[a]);
-    whole = whole && local.Size[a] == BlockSize;
-    end[a] = local.Size[a];
+    const std::int64_t cells = this->lattice().cells(a);
+    const std::int64_t last = std::min(block.Cell[a] + BlockCells, cells);
+    function.Corner[a] = std::max<std::int64_t>(block.Cell[a] - Margin, 0);
+    function.Begin[a] = block.Cell[a] - function.Corner[a];
+    function.End[a] = last - function.Corner[a];
+    local.Size[a] = std::min(last + Margin, cells) - function.Corner[a] + Order - 1;
+    first[a] = function.Corner[a] - (block.Cell[a] - Margin);
+    end[a] = first[a] + local.Size[a];
+    all[a] = BlockSize;
   }
   Vector coefficients(local.numberOfCoefficients());
-  if (whole)
-  {
-    std::copy(block.Coefficients.begin(), block.Coefficients.end(), coefficients.begin());
-  }
-  else
-  {
-    Index<Dim> all;
-    all.fill(BlockSize);
-    forRange<Dim>(Index<Dim>{}, end,
-      [&](const Index<Dim>& i)
-      {
-        coefficients[local.coefficientIndex(i)] =
-          block.Coefficients[static_cast<std::size_t>(flatIndex<Dim>(i, all))];
-      });
-  }
-  return ImplicitSpline<Dim>(local, std::move(coefficients));
+  std::int64_t next = 0;
+  Index<Dim> lineEnd = end;
+  lineEnd[0] = first[0] + 1;
+  forRange<Dim>(first, lineEnd,
+    [&](const Index<Dim>& line)
+    {
+      std::copy_n(block.Coefficients.data() + flatIndex<Dim>(line, all), local.Size[0],
+        coefficients.data() + next);
+      next += local.Size[0];
+    });
+  function.Spline = ImplicitSpline<Dim>(local, std::move(coefficients));
+  return function;
 }
 
 template <int Dim>
@@ -388,48 +400,51 @@ double BrickSpline<Dim>::valueAndGradient(const Point<Dim>& position, Point<Dim>
     nearest[a] = std::min(std::max(position[a], 0.0), this->lattice().extent(a));
   }
   std::size_t l = this->Levels.size();
-  Index<Dim> cell;
+  Index<Dim> cell, end;
+  std::array<BasisValues, Dim> w, d;
   do
   {
     --l;
     for (int a = 0; a < Dim; ++a)
     {
-      cell[a] = this->Levels[l].lattice().locate(nearest[a], a).Cell;
+      const auto i = static_cast<std::size_t>(a);
+      const Lattice<Dim>& lattice = this->Levels[l].lattice();
+      const AxisLocation at = lattice.locate(nearest[a], a);
+      cell[i] = at.Cell;
+      end[i] = at.Cell + Order;
+      w[i] = cubicBasis(at.T);
+      d[i] = cubicBasisFirstDerivative(at.T);
     }
   } while (l > 0 && !this->Levels[l].covers(cell));
 
-  // The one cell as a lattice of its own.
   const BrickLattice<Dim>& bricks = this->Levels[l];
-  Lattice<Dim> local;
-  local.Size.fill(Order);
-  local.Spacing = bricks.lattice().Spacing;
-  Vector coefficients(local.numberOfCoefficients());
-  std::int64_t next = 0;
-  Index<Dim> end;
-  for (int a = 0; a < Dim; ++a)
-  {
-    end[a] = cell[a] + Order;
-  }
+  double f = 0;
+  gradient.setZero();
   forRange<Dim>(cell, end,
     [&](const Index<Dim>& at)
     {
       Index<Dim> brick;
       std::int64_t inside = 0;
+      double product = 1;
+      Point<Dim> derivative = Point<Dim>::Ones();
       for (int a = Dim - 1; a >= 0; --a)
       {
-        brick[a] = at[a] / BrickWidth;
-        inside = inside * BrickWidth + at[a] % BrickWidth;
+        const auto i = static_cast<std::size_t>(a);
+        const auto k = static_cast<std::size_t>(at[i] - cell[i]);
+        brick[i] = at[i] / BrickWidth;
+        inside = inside * BrickWidth + at[i] % BrickWidth;
+        product *= w[i][k];
+        for (int b = 0; b < Dim; ++b)
+        {
+          derivative[b] *= a == b ? d[i][k] : w[i][k];
+        }
       }
-      coefficients[next++] = bricks.coefficients()[static_cast<std::size_t>(
+      const double c = bricks.coefficients()[static_cast<std::size_t>(
         static_cast<std::int64_t>(bricks.brickAt(brick)) * BrickSize<Dim> + inside)];
+      f += c * product;
+      gradient += c * derivative;
     });
-  Point<Dim> offset;
-  for (int a = 0; a < Dim; ++a)
-  {
-    offset[a] = static_cast<double>(cell[a]) * local.Spacing[a];
-  }
-  const ImplicitSpline<Dim> function(local, std::move(coefficients));
-  const double f = function.valueAndGradient(nearest - offset, gradient);
+  gradient = gradient.cwiseQuotient(bricks.lattice().Spacing).eval();
   return continueOutside<Dim>(position - nearest, f, &gradient);
 }
 

@@ -41,13 +41,22 @@ public:
   /// The coefficients of the finest lattice, all of them.
   Vector coefficients() const;
 
-  /// A block of knot cells of one level: its first cell and (BlockCells + 3)^Dim coefficients.
-  /// Those beyond the lattice have no meaning.
+  /// A block of knot cells of one level: its first cell, and the coefficients of its cells and of
+  /// Margin more on every side. Those beyond the lattice have no meaning.
   struct Block
   {
     std::size_t Level;
     Index<Dim> Cell;
     std::vector<double> Coefficients;
+  };
+
+  /// f on a block of the finest level, with the cells around it as far as the domain goes.
+  struct BlockFunction
+  {
+    Index<Dim> Corner; ///< the cell that Spline's domain begins with
+    Index<Dim> Begin;  ///< the first cell of the block and the end of its cells, from there
+    Index<Dim> End;
+    ImplicitSpline<Dim> Spline; ///< of unit spacing: positions and derivatives are in cells
   };
 
   /**
@@ -75,11 +84,12 @@ public:
     }
   }
 
-  /// f on the cells of a block of the finest level, relative to the corner of its first cell.
-  ImplicitSpline<Dim> blockFunction(const Block& block) const;
+  BlockFunction blockFunction(const Block& block) const;
 
 private:
-  static constexpr std::int64_t BlockSize = BlockCells + Order - 1;
+  /// Cells around a block that it knows f on, so that a position may leave it by a little.
+  static constexpr std::int64_t Margin = 1;
+  static constexpr std::int64_t BlockSize = BlockCells + 2 * Margin + Order - 1;
 
   std::vector<Block> children(const Block& block) const;
   void readStored(Block& block) const;

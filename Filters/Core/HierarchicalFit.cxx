@@ -29,17 +29,6 @@ constexpr double MostNormalError = 2;
 /// Samples that f is evaluated at in one go: a bound on memory.
 constexpr std::size_t SamplesAtATime = 1 << 20;
 
-template <int Dim>
-std::int64_t longestAxis(const Lattice<Dim>& lattice)
-{
-  std::int64_t cells = 0;
-  for (int a = 0; a < Dim; ++a)
-  {
-    cells = std::max(cells, lattice.cells(a));
-  }
-  return cells;
-}
-
 /// Calls action(sample, f, gradient) for the given samples, by a level that covers them.
 template <int Dim, typename Action>
 void forValues(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
@@ -56,13 +45,12 @@ void forValues(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
     {
       const float* v = &values[static_cast<std::size_t>(s - first) * (1 + Dim)];
       action(*s, static_cast<double>(v[0]),
-        Point<Dim>(
-          Eigen::Map<const typename Sample<Dim>::Direction>(v + 1).template cast<double>()));
+        Point<Dim>(Eigen::Map<const Eigen::Matrix<float, Dim, 1>>(v + 1).template cast<double>()));
     }
   }
 }
 
-/// The root mean square distance of the points from the zero set, in knot spacings.
+/// The root mean square distance of the points from the zero set.
 template <int Dim>
 double noiseOf(
   const Level<Dim>& level, const BrickLattice<Dim>& bricks, const Samples<Dim>& points, int threads)
@@ -78,7 +66,7 @@ double noiseOf(
         ++count;
       }
     });
-  return count > 0 ? std::sqrt(sum / count) / level.Grid.Spacing.mean() : 0;
+  return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
 template <int Dim>
@@ -86,7 +74,7 @@ void reportErrors(
   const Level<Dim>& level, const BrickLattice<Dim>& bricks, int threads, LevelReport& report)
 {
   double sum = 0, count = 0;
-  forValues(level, bricks, level.points(), threads,
+  forValues(level, bricks, level.Points, threads,
     [&](const Sample<Dim>& sample, double f, const Point<Dim>&)
     {
       if (!sample.IsExtra)
@@ -137,14 +125,11 @@ double validatedSmoothing(const std::vector<Level<Dim>>& levels,
     double sum = 0;
     forValues(training[last], scratch[last], heldOut, threads,
       [&](const Sample<Dim>& sample, double, const Point<Dim>& gradient)
-      {
-        sum += std::min(
-          (gradient - sample.Normal.template cast<double>()).squaredNorm(), MostNormalError);
-      });
+      { sum += std::min((gradient - sample.Normal).squaredNorm(), MostNormalError); });
     return std::sqrt(sum / static_cast<double>(heldOut.size()));
   };
   const double spacing = levels[last].Grid.Spacing.mean() *
-    std::pow(static_cast<double>(levels.back().points().size()) / occupiedCells(levels[last]),
+    std::pow(static_cast<double>(levels.back().Points.size()) / occupiedCells(levels[last]),
       -1. / (Dim - 1));
   double first = FirstSmoothing * spacing;
   std::deque<double> errors{ errorOf(first), errorOf(first * ValidationStep) };
@@ -190,9 +175,22 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
   const std::vector<Level<Dim>> levels = makeLevels(lattice, std::move(samples), options);
   std::vector<BrickLattice<Dim>> bricks = makeBricks(levels);
 
+  const auto solveAndReport = [&](std::size_t l)
+  {
+    const auto share = [&](double ofLevel)
+    {
+      return !progress ||
+        progress((static_cast<double>(l) + ofLevel) / static_cast<double>(levels.size()));
+    };
+    result.Reports.push_back(
+      solveLevel(levels, bricks, l, result.SmoothingLength, options, threads, share));
+    result.Aborted = result.Reports.back().Aborted;
+    return !result.Aborted;
+  };
+
   // The finest level that the points alone determine tells how noisy they are.
-  std::size_t gate = levels.size();
-  const auto n = static_cast<double>(levels.back().points().size());
+  std::size_t gate = levels.size(), next = 0;
+  const auto n = static_cast<double>(levels.back().Points.size());
   for (std::size_t l = 0; l < levels.size() && options.SmoothingLength < 0; ++l)
   {
     if (n >= PointsPerDeterminedCell * occupiedCells(levels[l]))
@@ -201,35 +199,38 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
     }
   }
   result.SmoothingLength = std::max(options.SmoothingLength, 0.0);
-  for (std::size_t l = 0; l < levels.size(); ++l)
+  if (gate < levels.size())
   {
-    if (progress && !progress(static_cast<double>(l) / static_cast<double>(levels.size())))
+    double missBefore = 0;
+    for (; next <= gate; ++next)
     {
-      result.Aborted = true;
-      return result;
+      if (!solveAndReport(next))
+      {
+        return result;
+      }
+      if (next + 1 >= gate)
+      {
+        missBefore = result.Noise;
+        result.Noise = noiseOf(levels[next], bricks[next], levels.back().Points, threads);
+      }
     }
-    result.Reports.push_back(
-      solveLevel(levels, bricks, l, result.SmoothingLength, options, threads));
-    if (l == gate || l + 1 == gate)
+    if (result.Noise > NoiseGate * levels[gate].Grid.Spacing.mean() &&
+      result.Noise > NoiseFall * missBefore)
     {
-      const double before = result.Noise * (l > 0 ? levels[l - 1].Grid.Spacing.mean() : 0);
-      result.Noise = noiseOf(levels[l], bricks[l], levels.back().points(), threads);
-      if (l + 1 == gate)
-      {
-        continue;
-      }
-      gate = levels.size();
-      if (result.Noise > NoiseGate &&
-        result.Noise * levels[l].Grid.Spacing.mean() > NoiseFall * before)
-      {
-        result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
-      }
-      if (result.SmoothingLength > 0)
-      {
-        // Start again, with smoothing on all levels.
-        result.Reports.clear();
-        l = static_cast<std::size_t>(-1);
-      }
+      result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
+    }
+    if (result.SmoothingLength > 0)
+    {
+      // Start again, with smoothing on all levels.
+      result.Reports.clear();
+      next = 0;
+    }
+  }
+  for (; next < levels.size(); ++next)
+  {
+    if (!solveAndReport(next))
+    {
+      return result;
     }
   }
   reportErrors(levels.back(), bricks.back(), threads, result.Reports.back());

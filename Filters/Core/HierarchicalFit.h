@@ -26,8 +26,8 @@ struct HierarchicalResult
   bool Aborted = false;
   std::shared_ptr<const BrickSpline<Dim>> Function; ///< nullptr if aborted
   std::vector<LevelReport> Reports;                 ///< coarse to fine
-  /// Root mean square distance of the points from the zero set of a level that they determine well,
-  /// in its knot spacings; 0 if the points are too sparse for any.
+  /// Root mean square distance of the points from the zero set of the finest level that they alone
+  /// determine; 0 if they are too sparse for any, or a smoothing length was given.
   double Noise = 0;
   double SmoothingLength = 0; ///< as used
 };

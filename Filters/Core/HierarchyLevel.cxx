@@ -12,11 +12,11 @@ namespace
 {
 /// Coarser levels see clusters in sub-cells, so many halvings of their knot cells.
 constexpr int ClusterBits = 2;
-/// Points per occupied cell beyond which the finest level sees clusters as well, in sub-cells of
-/// SubCellBits halvings: a surface crosses about as many of these.
-constexpr double MostPointsPerCell = 64;
 /// Cells along the longest side up to which a level may be the coarsest.
 constexpr std::int64_t CoarsestCells = 16;
+/// Iterations of a coarsest level of more cells than that, per cell along its longest side: they
+/// have to carry the data to the border of the domain.
+constexpr int CoarsestIterationsPerCell = 4;
 /// sum_i B_i(x)^2 on average: the density that one row per occupied cell of a surface has.
 constexpr double UnitDensity = 151. / 315;
 /// The scale of residuals is at least this many knot spacings.
@@ -46,7 +46,7 @@ HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bric
       row.Cell |= static_cast<std::int32_t>(cell[a] % BrickWidth) << (2 * a);
       row.T[a] = static_cast<float>(
         std::ldexp(sample.Position[a], -level.Coarsening) - static_cast<double>(cell[a]));
-      row.Slope[a] = static_cast<float>(level.Grid.Spacing[a]) * sample.Normal[a];
+      row.Slope[a] = static_cast<float>(level.Grid.Spacing[a] * sample.Normal[a]);
     }
     row.Value = sample.Value;
     row.Weight = sample.Weight;
@@ -136,7 +136,8 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
 /// Conjugate gradients with the diagonal as preconditioner, on the active coefficients.
 template <int Dim>
 void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
-  double tolerance, StoppingRule rule, int threads, LevelReport& report)
+  double tolerance, StoppingRule rule, int threads, const ProgressCallback& progress,
+  LevelReport& report)
 {
   std::vector<float> r, p, q, inverse;
   system.diagonal(inverse);
@@ -170,6 +171,11 @@ void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, in
   float* c = bricks.coefficients().data();
   while (report.NumberOfIterations < iterations && rz > 0 && !(measure < tolerance))
   {
+    if (progress && !progress(static_cast<double>(report.NumberOfIterations) / iterations))
+    {
+      report.Aborted = true;
+      return;
+    }
     system.product(p, q);
     const double curvature = parallelSum(n, threads,
       [&](std::int64_t begin, std::int64_t end)
@@ -261,12 +267,8 @@ std::vector<Level<Dim>> makeLevels(
     level.Dense = longest <= options.DenseCells;
     if (coarsening == 0)
     {
-      level.Data = std::move(points);
-      if (static_cast<double>(level.Data.size()) > MostPointsPerCell * occupiedCells(level))
-      {
-        level.Unclustered = std::move(level.Data);
-        level.Data = cluster(level.Unclustered, 0);
-      }
+      level.Data = cluster(points, 0);
+      level.Points = std::move(points);
     }
     else
     {
@@ -327,7 +329,7 @@ std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels)
 template <int Dim>
 LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
   std::vector<BrickLattice<Dim>>& bricks, std::size_t l, double smoothing,
-  const HierarchicalOptions& options, int threads)
+  const HierarchicalOptions& options, int threads, const ProgressCallback& progress)
 {
   const auto start = std::chrono::steady_clock::now();
   const Level<Dim>& level = levels[l];
@@ -358,14 +360,23 @@ LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
   report.Spacing = level.Grid.Spacing.maxCoeff();
   report.NumberOfRows = static_cast<std::int64_t>(rows.Rows.size());
   report.NumberOfActiveCoefficients = bricks[l].numberOfActiveCoefficients();
-  const int iterations = finest ? options.FinestIterations
-    : level.Dense               ? options.DenseIterations
-                                : options.BandIterations;
-  const double tolerance = finest ? options.FinestTolerance
-    : level.Dense                 ? options.DenseTolerance
-                                  : options.BandTolerance;
+  int iterations = level.Dense ? options.DenseIterations : options.BandIterations;
+  double tolerance = level.Dense ? options.DenseTolerance : options.BandTolerance;
+  if (l == 0 && longestAxis(level.Grid) > CoarsestCells)
+  {
+    iterations =
+      std::max(iterations, CoarsestIterationsPerCell * static_cast<int>(longestAxis(level.Grid)));
+  }
+  if (finest && options.FinestIterations > 0)
+  {
+    iterations = options.FinestIterations;
+  }
+  if (finest && options.FinestTolerance >= 0)
+  {
+    tolerance = options.FinestTolerance;
+  }
   solveSystem(system, bricks[l], iterations, tolerance,
-    finest ? options.Rule : StoppingRule::RelativeResidual, threads, report);
+    finest ? options.Rule : StoppingRule::RelativeResidual, threads, progress, report);
   if (finest)
   {
     report.Energy = system.energy();
@@ -399,7 +410,7 @@ template Samples<2> coarserData<2>(const Samples<2>&, int);
 template std::vector<BrickLattice<2>> makeBricks<2>(const std::vector<Level<2>>&);
 template double occupiedCells<2>(const Level<2>&);
 template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&,
-  std::size_t, double, const HierarchicalOptions&, int);
+  std::size_t, double, const HierarchicalOptions&, int, const ProgressCallback&);
 template std::vector<float> evaluateLevel<2>(
   const Level<2>&, const BrickLattice<2>&, Samples<2>, int);
 template std::vector<Level<3>> makeLevels<3>(
@@ -408,7 +419,7 @@ template Samples<3> coarserData<3>(const Samples<3>&, int);
 template std::vector<BrickLattice<3>> makeBricks<3>(const std::vector<Level<3>>&);
 template double occupiedCells<3>(const Level<3>&);
 template LevelReport solveLevel<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&,
-  std::size_t, double, const HierarchicalOptions&, int);
+  std::size_t, double, const HierarchicalOptions&, int, const ProgressCallback&);
 template std::vector<float> evaluateLevel<3>(
   const Level<3>&, const BrickLattice<3>&, Samples<3>, int);
 }

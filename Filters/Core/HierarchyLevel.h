@@ -30,9 +30,9 @@ struct HierarchicalOptions
   int DenseIterations = 20;
   double DenseTolerance = 1e-5;
   int BandIterations = 12;
-  int FinestIterations = 12;
+  int FinestIterations = 0; ///< of the finest level; 0: those of its kind
   double BandTolerance = 1e-3;
-  double FinestTolerance = 1e-3;
+  double FinestTolerance = -1; ///< of the finest level; negative: that of its kind
   StoppingRule Rule = StoppingRule::RelativeResidual; ///< of the finest level
   /// Residuals beyond this many standard deviations of the coarser prediction lose weight.
   double RobustFactor = 4;
@@ -57,6 +57,7 @@ struct LevelReport
   double AverageError = 0; ///< E_ave, mean of f^2 over the points; finest level only, as Energy
   double MaximumError = 0; ///< E_max, max |f| over the points
   double Seconds = 0;
+  bool Aborted = false;
 };
 
 /// A level before it is solved.
@@ -67,12 +68,7 @@ struct Level
   Lattice<Dim> Grid;
   bool Dense;
   Samples<Dim> Data;
-  Samples<Dim> Unclustered; ///< the points that Data stand for; empty if these are the points
-
-  const Samples<Dim>& points() const
-  {
-    return this->Unclustered.empty() ? this->Data : this->Unclustered;
-  }
+  Samples<Dim> Points; ///< on the finest level: what its clusters stand for
 
   Index<Dim> cellOf(const Sample<Dim>& sample) const
   {
@@ -90,8 +86,11 @@ struct Level
 /**
  * The levels of a fit, coarse to fine: spans halve upwards as ceil(n / 2) from the same corner.
  *
- * @param points  sorted; the finest level has them all, unless they are so many that clusters in
- *                sub-cells say the same
+ * All see clusters, the finest in sub-cells of SubCellBits halvings of its cells, of which a
+ * surface crosses about a hundred: the cost of an iteration does not grow with the points beyond
+ * that.
+ *
+ * @param points  sorted
  */
 template <int Dim>
 std::vector<Level<Dim>> makeLevels(
@@ -105,6 +104,18 @@ Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening);
 template <int Dim>
 std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels);
 
+/// Cells along the longest side.
+template <int Dim>
+std::int64_t longestAxis(const Lattice<Dim>& lattice)
+{
+  std::int64_t cells = 0;
+  for (int a = 0; a < Dim; ++a)
+  {
+    cells = std::max(cells, lattice.cells(a));
+  }
+  return cells;
+}
+
 /// Number of knot cells with data.
 template <int Dim>
 double occupiedCells(const Level<Dim>& level);
@@ -112,10 +123,11 @@ double occupiedCells(const Level<Dim>& level);
 /// Solves level @a l from its predecessor.
 ///
 /// @param smoothing  length, see HierarchicalOptions; 0: none
+/// @param progress   called before every iteration with the share of the level that is done
 template <int Dim>
 LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
   std::vector<BrickLattice<Dim>>& bricks, std::size_t l, double smoothing,
-  const HierarchicalOptions& options, int threads);
+  const HierarchicalOptions& options, int threads, const ProgressCallback& progress = {});
 
 /// f and its gradient at samples, (1 + Dim) values each, by a level that covers them.
 template <int Dim>

@@ -5,6 +5,9 @@ namespace ipia
 {
 namespace
 {
+/// Positions are multiples of the inverse, in cells.
+constexpr double PositionSteps = 1048576;
+
 template <int Dim>
 std::uint64_t mortonKey(const Index<Dim>& i)
 {
@@ -42,10 +45,13 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
 {
   const std::int64_t n = input.Positions.cols(), m = input.ExtraPositions.cols();
   std::vector<std::pair<std::uint64_t, std::int64_t>> order(static_cast<std::size_t>(n + m));
+  // Rounded, so that noise of the last bits, such as from another unit or origin, does not choose
+  // the cell of a point.
   const auto positionOf = [&](std::int64_t k) -> Point<Dim>
   {
-    return (k < n ? input.Positions.col(k) : input.ExtraPositions.col(k - n))
-      .cwiseQuotient(lattice.Spacing);
+    const Point<Dim> u = (k < n ? input.Positions.col(k) : input.ExtraPositions.col(k - n))
+                           .cwiseQuotient(lattice.Spacing);
+    return (u * PositionSteps).array().round() / PositionSteps;
   };
   for (std::int64_t k = 0; k < n + m; ++k)
   {
@@ -73,7 +79,7 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
     sample.Fairing = 1;
     if (!extra)
     {
-      sample.Normal = input.Normals.col(k).template cast<float>();
+      sample.Normal = input.Normals.col(k);
       sample.Fairing =
         input.LocalFairing.size() == 0 ? 1.F : static_cast<float>(input.LocalFairing[k]);
     }
@@ -104,7 +110,7 @@ Samples<Dim> cluster(const Samples<Dim>& samples, int halvings)
       const Sample<Dim>& s = samples[end];
       const double w = s.Weight;
       position += w * s.Position;
-      normal += w * s.Normal.template cast<double>();
+      normal += w * s.Normal;
       value += w * s.Value;
       fairing += w * s.Fairing;
       weight += w;
@@ -117,7 +123,7 @@ Samples<Dim> cluster(const Samples<Dim>& samples, int halvings)
       mean.Weight = static_cast<float>(weight);
       mean.Position = weight > 0 ? Point<Dim>(position / weight) : Point<Dim>(plain / count);
       const double share = weight > 0 ? 1 / weight : 0.0;
-      mean.Normal = (share * normal).template cast<float>();
+      mean.Normal = share * normal;
       mean.Value = static_cast<float>(share * value);
       mean.Fairing = weight > 0 ? static_cast<float>(share * fairing) : 1.F;
     }

@@ -32,11 +32,9 @@ struct HermiteInput
 template <int Dim>
 struct Sample
 {
-  using Direction = Eigen::Matrix<float, Dim, 1>;
-
   std::uint64_t Key;   ///< Morton code of its sub-cell
   Point<Dim> Position; ///< in cells of the finest lattice
-  Direction Normal;
+  Point<Dim> Normal;
   float Value;
   float Weight;
   float Fairing;

@@ -85,26 +85,27 @@ TYPED_TEST(BrickSplineTest, BlocksHoldEveryChangeOfSign)
         [&](const typename BrickSpline<Dim>::Block& block)
         {
           ++blocks;
-          const ImplicitSpline<Dim> local = bricks.blockFunction(block);
+          const auto function = bricks.blockFunction(block);
+          const ImplicitSpline<Dim>& local = function.Spline;
           for (std::int64_t i = 0; i < local.coefficients().size(); ++i)
           {
-            Index<Dim> at, cell;
+            Index<Dim> at;
             bool inside = true;
             std::int64_t rest = i;
             for (int a = 0; a < Dim; ++a)
             {
-              at[a] = block.Cell[a] + rest % local.lattice().Size[a];
-              inside = inside && rest % local.lattice().Size[a] < local.lattice().cells(a);
+              const std::int64_t k = rest % local.lattice().Size[a];
+              at[a] = function.Corner[a] + k;
+              inside = inside && k >= function.Begin[a] && k < function.End[a];
               rest /= local.lattice().Size[a];
             }
-            cell = at;
             const std::int64_t index = lattice.coefficientIndex(at);
             EXPECT_NEAR(local.coefficients()[i], dense.coefficients()[index], 1e-6);
             const auto entry = seen.emplace(index, local.coefficients()[i]).first;
             ASSERT_EQ(entry->second, local.coefficients()[i]) << "blocks agree on what they share";
             if (inside)
             {
-              visited[static_cast<std::size_t>(lattice.cellIndex(cell))] = 1;
+              visited[static_cast<std::size_t>(lattice.cellIndex(at))] = 1;
             }
           }
         });

@@ -94,6 +94,21 @@ inline vtkSmartPointer<vtkPolyData> SphereCloud(
   return ToPolyData(SpherePoints(n, radius, centre));
 }
 
+/// Points of the unit sphere, moved along their normals by up to @a noise either way.
+inline OrientedPoints NoisySphere(int n, double noise)
+{
+  OrientedPoints cloud = SpherePoints(n);
+  vtkNew<vtkMinimalStandardRandomSequence> random;
+  random->SetSeed(1);
+  for (Vector3& x : cloud.Positions)
+  {
+    random->Next();
+    const double radius = 1 + random->GetRangeValue(-noise, noise);
+    x = { radius * x[0], radius * x[1], radius * x[2] };
+  }
+  return cloud;
+}
+
 /// A surface F = 0 with F < 0 inside, in a box that holds it.
 struct ImplicitShape
 {
@@ -276,22 +291,41 @@ struct KnownSurface
   std::string Name;
   OrientedPoints Cloud;
   int Components, Genus;
+  std::vector<ImplicitShape> Shapes; ///< that it is made of
+  double Volume;                     ///< inside
+
+  /// Distance to the nearest of the shapes, to first order where F is no distance.
+  double Distance(const Vector3& x) const
+  {
+    double nearest = VTK_DOUBLE_MAX;
+    for (const ImplicitShape& shape : this->Shapes)
+    {
+      const Vector3 g = shape.Gradient(x);
+      nearest = std::min(nearest, std::abs(shape.Value(x)) / vtkMath::Norm(g.data()));
+    }
+    return nearest;
+  }
 };
 
 /// The shapes of the topology tests, about n points each.
 inline std::vector<KnownSurface> KnownSurfaces(vtkIdType n, Choice choice = Choice::Even)
 {
-  const ImplicitShape ball = Sphere(1, { 0, 0, 0 });
+  const ImplicitShape ball = Sphere(1, { 0, 0, 0 }), torus = Torus(1, 0.4);
+  const ImplicitShape eight = DoubleTorus(std::sqrt(0.03));
+  const ImplicitShape neighbour = Sphere(1, { 3, 0, 0 }); // the gap is one radius
+  const ImplicitShape hollow = Sphere(0.5, { 0, 0, 0 });
+  constexpr double pi = 3.14159265358979323846, full = 4 * pi / 3;
   OrientedPoints apart = PointsOn(ball, n / 2, 1, choice);
-  apart.Append(PointsOn(Sphere(1, { 3, 0, 0 }), n / 2, 1, choice)); // the gap is one radius
+  apart.Append(PointsOn(neighbour, n / 2, 1, choice));
   OrientedPoints nested = PointsOn(ball, n * 4 / 5, 1, choice);
-  nested.Append(PointsOn(Sphere(0.5, { 0, 0, 0 }), n / 5, -1, choice)); // a hollow ball
+  nested.Append(PointsOn(hollow, n / 5, -1, choice));
   return {
-    { "sphere", PointsOn(ball, n, 1, choice), 1, 0 },
-    { "torus", PointsOn(Torus(1, 0.4), n, 1, choice), 1, 1 },
-    { "double torus", PointsOn(DoubleTorus(std::sqrt(0.03)), n, 1, choice), 1, 2 },
-    { "two spheres", apart, 2, 0 },
-    { "nested spheres", nested, 2, 0 },
+    { "sphere", PointsOn(ball, n, 1, choice), 1, 0, { ball }, full },
+    { "torus", PointsOn(torus, n, 1, choice), 1, 1, { torus }, 2 * pi * pi * 0.4 * 0.4 },
+    { "double torus", PointsOn(eight, n, 1, choice), 1, 2, { eight },
+      0.540627 }, // the integral of 2 sqrt(thickness^2 - q^2), by quadrature
+    { "two spheres", apart, 2, 0, { ball, neighbour }, 2 * full },
+    { "nested spheres", nested, 2, 0, { ball, hollow }, full * 7 / 8 },
   };
 }
 

@@ -15,7 +15,9 @@
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
+#include "vtkLogger.h"
 #include "vtkNew.h"
+#include "vtkOutputWindow.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -162,6 +164,32 @@ private:
   }
 };
 
+/// Watches the output window, where messages go that no observer takes, as long as it lives. They
+/// are not logged then: CTest takes a logged error for a failure.
+class WindowWatch
+{
+public:
+  explicit WindowWatch(MessageObserver* observer)
+    : Observer(observer)
+  {
+    observer->WatchObject(vtkOutputWindow::GetInstance());
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  }
+
+  ~WindowWatch()
+  {
+    vtkOutputWindow::GetInstance()->RemoveObserver(this->Observer);
+    vtkLogger::SetStderrVerbosity(this->Verbosity);
+  }
+
+  WindowWatch(const WindowWatch&) = delete;
+  void operator=(const WindowWatch&) = delete;
+
+private:
+  MessageObserver* Observer;
+  const vtkLogger::Verbosity Verbosity = vtkLogger::GetCurrentVerbosityCutoff();
+};
+
 /// A fitter set to the classic method of one level, with few iterations for a quick test.
 inline vtkSmartPointer<vtkIPIAImplicitFitter> NewClassicFitter(
   vtkDataObject* cloud = nullptr, int gridSize = 0)
@@ -171,6 +199,37 @@ inline vtkSmartPointer<vtkIPIAImplicitFitter> NewClassicFitter(
   fitter->SetNormalConstraintToTwoSidedOffset();
   fitter->SetSolverToProgressiveIteration();
   fitter->SetMaximumNumberOfIterations(20);
+  fitter->SetGridSize(gridSize, gridSize, gridSize);
+  if (cloud)
+  {
+    fitter->SetInputDataObject(0, cloud);
+  }
+  return fitter;
+}
+
+/// The methods that tests of input, errors and pipelines run for.
+enum class Method
+{
+  Classic,
+  Default ///< nothing set: the hierarchy
+};
+
+constexpr Method Methods[] = { Method::Classic, Method::Default };
+
+inline std::string NameOf(Method method)
+{
+  return method == Method::Classic ? "classic" : "default";
+}
+
+/// A fitter set to a method.
+inline vtkSmartPointer<vtkIPIAImplicitFitter> NewFitter(
+  Method method, vtkDataObject* cloud = nullptr, int gridSize = 0)
+{
+  if (method == Method::Classic)
+  {
+    return NewClassicFitter(cloud, gridSize);
+  }
+  auto fitter = vtkSmartPointer<vtkIPIAImplicitFitter>::New();
   fitter->SetGridSize(gridSize, gridSize, gridSize);
   if (cloud)
   {
@@ -198,15 +257,20 @@ inline double KnotSpacing(vtkIPIAImplicitFitter* fitter)
   return std::max({ h[0], h[1], h[2] });
 }
 
+/// No point, cell or array.
+inline bool IsEmpty(vtkDataSet* data)
+{
+  return data->GetNumberOfPoints() == 0 && data->GetNumberOfCells() == 0 &&
+    data->GetPointData()->GetNumberOfArrays() == 0 &&
+    data->GetFieldData()->GetNumberOfArrays() == 0;
+}
+
 /// No point, cell or array on any port.
 inline bool OutputsAreEmpty(vtkIPIAImplicitFitter* fitter)
 {
   for (int port = 0; port < fitter->GetNumberOfOutputPorts(); ++port)
   {
-    auto* data = vtkDataSet::SafeDownCast(fitter->GetOutputDataObject(port));
-    if (data->GetNumberOfPoints() != 0 || data->GetNumberOfCells() != 0 ||
-      data->GetPointData()->GetNumberOfArrays() != 0 ||
-      data->GetFieldData()->GetNumberOfArrays() != 0)
+    if (!IsEmpty(vtkDataSet::SafeDownCast(fitter->GetOutputDataObject(port))))
     {
       return false;
     }

@@ -3,79 +3,23 @@
  * The fitter in a pipeline: nothing set and one Update() at the end, changed input, time steps,
  * extents, each port alone, what makes it fit anew and what does not.
  */
-#include "IPIATestShapes.h"
-#include "IPIATestTopology.h"
-#include "IPIATestUtilities.h"
+#include "IPIATestPipeline.h"
 
 #include "vtkContourFilter.h"
 #include "vtkFlyingEdges2D.h"
 #include "vtkIPIAImplicitFunction.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkMath.h"
-#include "vtkObjectFactory.h"
-#include "vtkPolyDataAlgorithm.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <functional>
 #include <utility>
 
-/// Points on a sphere that grows and moves with time: radius 1 + t, centre (3 t, 0, 0).
-class vtkTimedSphere : public vtkPolyDataAlgorithm
-{
-public:
-  static vtkTimedSphere* New();
-  vtkTypeMacro(vtkTimedSphere, vtkPolyDataAlgorithm);
-
-protected:
-  vtkTimedSphere() { this->SetNumberOfInputPorts(0); }
-
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
-  {
-    const double steps[3] = { 0, 1, 2 }, range[2] = { 0, 2 };
-    vtkInformation* info = output->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps, 3);
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
-    return 1;
-  }
-
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
-  {
-    vtkInformation* info = output->GetInformationObject(0);
-    const auto key = vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP();
-    const double time = info->Has(key) ? info->Get(key) : 0;
-    vtkPolyData* data = vtkPolyData::GetData(output, 0);
-    data->ShallowCopy(ipiatest::SphereCloud(600, 1 + time, { 3 * time, 0, 0 }));
-    data->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
-    return 1;
-  }
-};
-
-vtkStandardNewMacro(vtkTimedSphere);
-
 namespace
 {
 using ipiatest::Checks;
+using ipiatest::CheckSphere;
 using ipiatest::NewClassicFitter;
 using ipiatest::SphereCloud;
 using ipiatest::Text;
-
-/// The surface is one closed sphere; the largest error of its vertices is below 1% of its radius.
-void CheckSphere(
-  Checks& checks, vtkPolyData* surface, double radius, double centre, const std::string& what)
-{
-  checks.Equal(ipiatest::TopologyOf(surface), ipiatest::Topology{ 1, 0, 0, 0 }, what);
-  double largest = 0;
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    double x[3];
-    surface->GetPoint(i, x);
-    x[0] -= centre;
-    largest = std::max(largest, std::abs(vtkMath::Norm(x) - radius));
-  }
-  checks.AtMost(largest, 0.01 * radius, what + ": largest distance");
-}
+using ipiatest::TimedSphere;
 
 void TestNothingSet(Checks& checks)
 {
@@ -134,31 +78,18 @@ void TestEditedInput(Checks& checks)
 template <typename Contour>
 void TestTimeSteps(Checks& checks)
 {
-  vtkNew<vtkTimedSphere> source;
+  vtkNew<TimedSphere> source;
   vtkNew<vtkIPIAImplicitFitter> fitter;
   fitter->SetInputConnection(source->GetOutputPort());
   vtkNew<Contour> surface;
   surface->SetInputConnection(fitter->GetOutputPort());
   surface->SetValue(0, 0.0);
-  vtkNew<ipiatest::MessageObserver> messages;
-  for (vtkAlgorithm* algorithm : { static_cast<vtkAlgorithm*>(source),
-         static_cast<vtkAlgorithm*>(fitter), static_cast<vtkAlgorithm*>(surface) })
-  {
-    messages->Watch(algorithm);
-  }
-  // Forwards, backwards and twice the same.
-  for (double time : { 0., 1., 2., 2., 0., 1. })
-  {
-    surface->UpdateTimeStep(time);
-    CheckSphere(checks, surface->GetOutput(), 1 + time, 3 * time,
-      Text("time ", time, " by ", surface->GetClassName()));
-  }
-  messages->CheckSilence(checks, "time steps");
+  ipiatest::CheckTimeSteps(checks, source, fitter, surface);
 }
 
 void TestTimeStepsOfTheFitter(Checks& checks)
 {
-  vtkNew<vtkTimedSphere> source;
+  vtkNew<TimedSphere> source;
   vtkNew<vtkIPIAImplicitFitter> fitter;
   fitter->SetInputConnection(source->GetOutputPort());
   for (double time : { 2., 0., 1. })

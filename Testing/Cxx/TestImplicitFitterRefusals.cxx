@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * What cannot be fitted is refused with one error that names the cause, and leaves nothing on any
- * port: at first, after a good run, and with a contour filter downstream.
+ * port: at first, after a good run, and with a contour filter downstream; by the classic and the
+ * default method, and by the reconstruction in one step.
  */
 #include "IPIATestShapes.h"
 #include "IPIATestUtilities.h"
 
 #include "vtkFlyingEdges3D.h"
 #include "vtkIPIAImplicitFunction.h"
+#include "vtkIPIASurfaceReconstruction.h"
 #include "vtkMultiBlockDataSet.h"
 
 #include <chrono>
@@ -17,20 +19,23 @@
 namespace
 {
 using ipiatest::Checks;
+using ipiatest::Method;
 using ipiatest::OrientedPoints;
 using ipiatest::SphereCloud;
 using ipiatest::ToPolyData;
 
-using Setup = std::function<void(vtkIPIAImplicitFitter*)>;
+/// Sets what is refused: @a algorithm takes inputs and the choice of arrays, @a fitter parameters.
+/// They differ where the fitter is part of a reconstruction.
+using Setup = std::function<void(vtkAlgorithm* algorithm, vtkIPIAImplicitFitter* fitter)>;
 
 /// Sets nothing.
-void NoSetup(vtkIPIAImplicitFitter*)
+void NoSetup(vtkAlgorithm*, vtkIPIAImplicitFitter*)
 {
 }
 
-void ChooseWeights(vtkIPIAImplicitFitter* fitter)
+void ChooseWeights(vtkAlgorithm* algorithm, vtkIPIAImplicitFitter*)
 {
-  fitter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Weight");
+  algorithm->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Weight");
 }
 
 void CheckNothingLeft(Checks& checks, vtkIPIAImplicitFitter* fitter, const std::string& what)
@@ -46,13 +51,14 @@ void CheckNothingLeft(Checks& checks, vtkIPIAImplicitFitter* fitter, const std::
  * @param setup   these parameters
  * @param phrase  a part of the message
  */
-void CheckRefused(Checks& checks, const std::string& what, vtkDataObject* input,
-  const std::string& phrase, const Setup& setup = NoSetup)
+void CheckRefusedByFitter(Checks& checks, Method method, const std::string& cause,
+  vtkDataObject* input, const std::string& phrase, const Setup& setup)
 {
+  const std::string what = cause + ", " + NameOf(method);
   vtkNew<ipiatest::MessageObserver> messages;
 
-  auto alone = ipiatest::NewClassicFitter(input);
-  setup(alone);
+  auto alone = NewFitter(method, input);
+  setup(alone, alone);
   messages->Watch(alone);
   const auto start = std::chrono::steady_clock::now();
   alone->Update();
@@ -64,7 +70,7 @@ void CheckRefused(Checks& checks, const std::string& what, vtkDataObject* input,
   CheckNothingLeft(checks, alone, what + ", updated again");
   messages->Clear();
 
-  auto again = ipiatest::NewClassicFitter(SphereCloud(), 12);
+  auto again = NewFitter(method, SphereCloud(), 12);
   vtkNew<vtkFlyingEdges3D> surface;
   surface->SetInputConnection(again->GetOutputPort());
   surface->SetValue(0, 0.0);
@@ -72,7 +78,7 @@ void CheckRefused(Checks& checks, const std::string& what, vtkDataObject* input,
   checks.That(surface->GetOutput()->GetNumberOfPoints() > 0, "the good run has a surface");
   again->SetGridSize(0, 0, 0);
   again->SetInputDataObject(0, input);
-  setup(again);
+  setup(again, again);
   messages->Watch(again);
   // vtkFlyingEdges3D reports itself that an image without scalars cannot be contoured.
   vtkNew<ipiatest::MessageObserver> downstream;
@@ -82,6 +88,49 @@ void CheckRefused(Checks& checks, const std::string& what, vtkDataObject* input,
   CheckNothingLeft(checks, again, what + ", after a good run");
   checks.Equal(
     surface->GetOutput()->GetNumberOfPoints(), vtkIdType(0), what + ": points downstream");
+}
+
+/// The one message reaches an observer of the reconstruction, or else the output window; no filter
+/// within it has one of its own.
+void CheckRefusedByReconstruction(Checks& checks, const std::string& cause, vtkDataObject* input,
+  const std::string& phrase, const Setup& setup)
+{
+  const std::string what = cause + ", reconstruction";
+  vtkNew<ipiatest::MessageObserver> messages, window;
+  const ipiatest::WindowWatch watch(window);
+  vtkNew<vtkIPIASurfaceReconstruction> reconstruction;
+  reconstruction->SetInputData(SphereCloud());
+  reconstruction->GetFitter()->SetGridSize(12, 12, 12);
+  messages->Watch(reconstruction);
+  reconstruction->Update();
+  messages->CheckSilence(checks, what + ": good run");
+  checks.That(reconstruction->GetOutput()->GetNumberOfPolys() > 0, "the good run has a surface");
+
+  reconstruction->GetFitter()->SetGridSize(0, 0, 0);
+  reconstruction->SetInputDataObject(0, input);
+  setup(reconstruction, reconstruction->GetFitter());
+  reconstruction->Update();
+  messages->CheckOneError(checks, phrase, what);
+  window->CheckSilence(checks, what + ": output window");
+  checks.That(ipiatest::IsEmpty(reconstruction->GetOutput()), what + ": the output is empty");
+  CheckNothingLeft(checks, reconstruction->GetFitter(), what + ", fitter");
+
+  vtkNew<vtkIPIASurfaceReconstruction> unobserved;
+  unobserved->SetInputDataObject(0, input);
+  setup(unobserved, unobserved->GetFitter());
+  unobserved->Update();
+  window->CheckOneError(checks, phrase, what + ", unobserved");
+  checks.That(ipiatest::IsEmpty(unobserved->GetOutput()), what + ", unobserved: empty");
+}
+
+void CheckRefused(Checks& checks, const std::string& what, vtkDataObject* input,
+  const std::string& phrase, const Setup& setup = NoSetup)
+{
+  for (Method method : ipiatest::Methods)
+  {
+    CheckRefusedByFitter(checks, method, what, input, phrase, setup);
+  }
+  CheckRefusedByReconstruction(checks, what, input, phrase, setup);
 }
 
 void TestNoPoints(Checks& checks)
@@ -127,8 +176,9 @@ void TestWrongComponentCount(Checks& checks)
   pairs->Fill(1);
   cloud->GetPointData()->AddArray(pairs);
   CheckRefused(checks, "normals of two components", cloud, "has 2 components",
-    [](vtkIPIAImplicitFitter* fitter)
-    { fitter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Pairs"); });
+    [](vtkAlgorithm* algorithm, auto*) {
+      algorithm->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Pairs");
+    });
 }
 
 void TestTooFewNormals(Checks& checks)
@@ -199,53 +249,99 @@ void TestCollinearPoints(Checks& checks)
 void TestGridSize(Checks& checks)
 {
   CheckRefused(checks, "grid size 3", SphereCloud(), "GridSize is 3 along axis 1",
-    [](auto* fitter) { fitter->SetGridSize(10, 3, 10); });
+    [](auto*, auto* fitter) { fitter->SetGridSize(10, 3, 10); });
   CheckRefused(checks, "negative grid size", SphereCloud(), "GridSize is -1 along axis 2",
-    [](auto* fitter) { fitter->SetGridSize(10, 10, -1); });
+    [](auto*, auto* fitter) { fitter->SetGridSize(10, 10, -1); });
 }
 
 void TestSampleDimensions(Checks& checks)
 {
   CheckRefused(checks, "one sample", SphereCloud(), "SampleDimensions is 1 along axis 0",
-    [](auto* fitter) { fitter->SetSampleDimensions(1, 10, 10); });
+    [](auto*, auto* fitter) { fitter->SetSampleDimensions(1, 10, 10); });
   CheckRefused(checks, "negative samples", SphereCloud(), "SampleDimensions is -5 along axis 0",
-    [](auto* fitter) { fitter->SetSampleDimensions(-5, 10, 10); });
+    [](auto*, auto* fitter) { fitter->SetSampleDimensions(-5, 10, 10); });
 }
 
 void TestSizesBeyondMemory(Checks& checks)
 {
   CheckRefused(checks, "GridSize 20000^3", SphereCloud(), "GiB of memory",
-    [](auto* fitter) { fitter->SetGridSize(20000, 20000, 20000); });
+    [](auto*, auto* fitter) { fitter->SetGridSize(20000, 20000, 20000); });
   CheckRefused(checks, "SampleDimensions 100000^3", SphereCloud(), "GiB of memory",
-    [](auto* fitter) { fitter->SetSampleDimensions(100000, 100000, 100000); });
+    [](auto*, auto* fitter) { fitter->SetSampleDimensions(100000, 100000, 100000); });
   CheckRefused(checks, "largest GridSize", SphereCloud(), "GiB of memory",
-    [](auto* fitter) { fitter->SetGridSize(VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX); });
+    [](auto*, auto* fitter) { fitter->SetGridSize(VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX); });
   CheckRefused(checks, "largest SampleDimensions", SphereCloud(), "GiB of memory",
-    [](auto* fitter) { fitter->SetSampleDimensions(VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX); });
+    [](auto*, auto* fitter)
+    { fitter->SetSampleDimensions(VTK_INT_MAX, VTK_INT_MAX, VTK_INT_MAX); });
   CheckRefused(checks, "Padding 1e5", SphereCloud(), "GiB of memory",
-    [](auto* fitter) { fitter->SetPadding(1e5); });
+    [](auto*, auto* fitter) { fitter->SetPadding(1e5); });
   CheckRefused(checks, "Padding 1e12", SphereCloud(), "Padding is 1e+12",
-    [](auto* fitter) { fitter->SetPadding(1e12); });
+    [](auto*, auto* fitter) { fitter->SetPadding(1e12); });
   CheckRefused(checks, "largest Padding", SphereCloud(), "Padding is 1",
-    [](auto* fitter) { fitter->SetPadding(VTK_DOUBLE_MAX); });
+    [](auto*, auto* fitter) { fitter->SetPadding(VTK_DOUBLE_MAX); });
+  for (double padding : { 1e300, std::numeric_limits<double>::quiet_NaN() })
+  {
+    CheckRefused(checks, ipiatest::Text("Padding ", padding, " with GridSize"), SphereCloud(),
+      "Padding is ",
+      [=](auto*, auto* fitter)
+      {
+        fitter->SetPadding(padding);
+        fitter->SetGridSize(10, 10, 10);
+      });
+  }
+  CheckRefused(checks, "bounds 1e300", SphereCloud(), "times as long as the points",
+    [](auto*, auto* fitter)
+    { fitter->SetModelBounds(-1e300, 1e300, -1e300, 1e300, -1e300, 1e300); });
 }
 
 void TestBounds(Checks& checks)
 {
   CheckRefused(checks, "bounds without points", SphereCloud(), "None of the points lies in",
-    [](auto* fitter) { fitter->SetModelBounds(5, 6, 5, 6, 5, 6); });
+    [](auto*, auto* fitter) { fitter->SetModelBounds(5, 6, 5, 6, 5, 6); });
   CheckRefused(checks, "bounds empty along y", SphereCloud(), "empty or not finite along axis 1",
-    [](auto* fitter) { fitter->SetModelBounds(-2, 2, 1, -1, -2, 2); });
+    [](auto*, auto* fitter) { fitter->SetModelBounds(-2, 2, 1, -1, -2, 2); });
   CheckRefused(checks, "bounds without length along z", SphereCloud(),
     "empty or not finite along axis 2",
-    [](auto* fitter) { fitter->SetModelBounds(-2, 2, -2, 2, 1, 1); });
+    [](auto*, auto* fitter) { fitter->SetModelBounds(-2, 2, -2, 2, 1, 1); });
   CheckRefused(checks, "infinite bounds", SphereCloud(), "empty or not finite along axis 0",
-    [](auto* fitter) { fitter->SetModelBounds(-HUGE_VAL, 2, -2, 2, -2, 2); });
+    [](auto*, auto* fitter) { fitter->SetModelBounds(-HUGE_VAL, 2, -2, 2, -2, 2); });
+}
+
+/// What is left in the bounds cannot be fitted.
+void TestLittleInBounds(Checks& checks)
+{
+  const auto bounds = [](auto*, auto* fitter) { fitter->SetModelBounds(4, 6, 4, 6, 4, 6); };
+  OrientedPoints cloud = ipiatest::SpherePoints(600);
+  cloud.Add({ 5, 5, 5 }, { 0, 0, 1 });
+  CheckRefused(
+    checks, "bounds with one point", ToPolyData(cloud), "Only one point lies in", bounds);
+  cloud.Append(ipiatest::SpherePoints(20, 0.5, { 5, 5, 5 }));
+  auto zero = ToPolyData(cloud);
+  auto weightless = ToPolyData(cloud);
+  vtkNew<vtkDoubleArray> weights;
+  weights->SetName("Weight");
+  for (vtkIdType i = 0; i < 621; ++i)
+  {
+    weights->InsertNextValue(i < 600);
+    if (i >= 600)
+    {
+      zero->GetPointData()->GetNormals()->SetTuple3(i, 0, 0, 0);
+    }
+  }
+  weightless->GetPointData()->AddArray(weights);
+  CheckRefused(
+    checks, "bounds without normals", zero, "All normals are zero or not finite in", bounds);
+  CheckRefused(checks, "bounds without weights", weightless, "All row weights are zero in",
+    [&](auto* algorithm, auto* fitter)
+    {
+      bounds(algorithm, fitter);
+      ChooseWeights(algorithm, fitter);
+    });
 }
 
 void TestDimension(Checks& checks)
 {
-  const auto planar = [](auto* fitter) { fitter->SetDimension(2); };
+  const auto planar = [](auto*, auto* fitter) { fitter->SetDimension(2); };
   CheckRefused(checks, "2-D for a sphere", SphereCloud(), "do not lie in a plane", planar);
   OrientedPoints plane;
   for (int i = 0; i < 100; ++i)
@@ -260,13 +356,14 @@ void TestExtraRowsWithoutValues(Checks& checks)
 {
   CheckRefused(checks, "extra rows without values", SphereCloud(),
     "The extra rows (input port 1) have no target values",
-    [](auto* fitter) { fitter->SetExtraRowsData(SphereCloud(10, 0.5)); });
+    [](vtkAlgorithm* algorithm, auto*) { algorithm->SetInputDataObject(1, SphereCloud(10, 0.5)); });
 }
 
 void TestDivergence(Checks& checks)
 {
-  CheckRefused(checks, "diverging step", SphereCloud(), "diverges with StepSize 1000",
-    [](auto* fitter) { fitter->SetStepSize(1000); });
+  // The default method has no step.
+  CheckRefusedByFitter(checks, Method::Classic, "diverging step", SphereCloud(),
+    "diverges with StepSize 1000", [](auto*, auto* fitter) { fitter->SetStepSize(1000); });
 }
 
 void TestBlockWithoutNormals(Checks& checks)
@@ -313,6 +410,7 @@ int TestImplicitFitterRefusals(int, char*[])
   TestSampleDimensions(checks);
   TestSizesBeyondMemory(checks);
   TestBounds(checks);
+  TestLittleInBounds(checks);
   TestDimension(checks);
   TestExtraRowsWithoutValues(checks);
   TestDivergence(checks);

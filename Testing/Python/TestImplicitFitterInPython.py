@@ -8,7 +8,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkConnectivityFilter, vtkFlyingEdges3D
 
-from ipia import vtkIPIAImplicitFitter, vtkIPIAImplicitFunction
+from ipia import vtkIPIAImplicitFitter, vtkIPIAImplicitFunction, vtkIPIASurfaceReconstruction
 
 
 def sphere(count=600):
@@ -64,6 +64,16 @@ class TestImplicitFitterInPython(Testing.vtkTest):
         self.assertEqual(parts.GetNumberOfExtractedRegions(), 1)
         vertices = vtk_to_numpy(surface.GetOutput().GetPoints().GetData())
         self.assertLess(np.abs(np.linalg.norm(vertices, axis=1) - 1).max(), 0.01)
+
+    def test_reconstruction_with_nothing_set(self):
+        reconstruction = vtkIPIASurfaceReconstruction()
+        reconstruction.SetInputData(cloud(sphere(), sphere()))
+        reconstruction.Update()
+        surface = dsa.WrapDataObject(reconstruction.GetOutput())
+        self.assertLess(np.abs(np.linalg.norm(surface.Points, axis=1) - 1).max(), 0.01)
+        self.assertGreater((surface.Points * surface.PointData["Normals"]).sum(axis=1).min(), 0.99)
+        self.assertIsInstance(reconstruction.GetFitter(), vtkIPIAImplicitFitter)
+        self.assertGreater(reconstruction.GetFitter().GetNumberOfLevelsUsed(), 0)
 
     def test_image_as_array(self):
         fitter = classic_fitter(cloud(sphere(), sphere()))
