@@ -23,7 +23,7 @@ ImplicitSpline<Dim> splineWithFarField()
   const ImplicitSpline<Dim> spline = randomSpline<Dim>();
   FarField far;
   far.Magnitude = 0.625;
-  far.Sign.assign(static_cast<std::size_t>(spline.lattice().numberOfCells()), 0);
+  far.Sign.assign(static_cast<std::size_t>(spline.lattice().numberOfBoxes()), 0);
   ipia::test::Random random(22);
   std::int8_t sign = 0;
   for (std::int8_t& s : far.Sign)
@@ -34,7 +34,7 @@ ImplicitSpline<Dim> splineWithFarField()
     }
     s = sign;
   }
-  std::fill(far.Sign.begin(), far.Sign.begin() + spline.lattice().cells(0), std::int8_t(-1));
+  std::fill(far.Sign.begin(), far.Sign.begin() + spline.lattice().boxes(0), std::int8_t(-1));
   return { spline.lattice(), spline.coefficients(), far };
 }
 
@@ -354,7 +354,7 @@ TYPED_TEST(ImplicitSplineTest, TheGradientPointsAwayFromAFarFieldAtTheBorder)
   const ImplicitSpline<Dim> plain = randomSpline<Dim>();
   FarField far;
   far.Magnitude = 2;
-  far.Sign.assign(static_cast<std::size_t>(plain.lattice().numberOfCells()), std::int8_t(-1));
+  far.Sign.assign(static_cast<std::size_t>(plain.lattice().numberOfBoxes()), std::int8_t(-1));
   const ImplicitSpline<Dim> spline(plain.lattice(), plain.coefficients(), far);
   const Point<Dim> middle = ipia::test::extents(plain.lattice()) / 2;
   EXPECT_EQ(spline.value(middle), -2);
