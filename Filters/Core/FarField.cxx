@@ -121,6 +121,7 @@ public:
           this->giveSign(region, rim);
         });
     }
+    this->widen();
     far.Sign.resize(static_cast<std::size_t>(this->ControlLattice.numberOfBoxes()));
     this->forRows([&](std::size_t first, std::size_t padded, std::size_t count)
       { std::copy_n(this->Constant.data() + padded, count, far.Sign.data() + first); });
@@ -252,6 +253,55 @@ private:
       {
         this->Constant[static_cast<std::size_t>(box)] = static_cast<std::int8_t>(regionSign);
       }
+    }
+  }
+
+  /// Signs reach half a box beyond the node that shows them: boxes beside a constant take it too,
+  /// but for those of data points and those beside the surface.
+  void widen()
+  {
+    std::array<std::int64_t, Dim == 2 ? 9 : 27> around{};
+    for (std::size_t k = 0; k < around.size(); ++k)
+    {
+      auto rest = static_cast<std::int64_t>(k);
+      for (const std::int64_t stride : this->Stride)
+      {
+        around[k] += (rest % 3 - 1) * stride;
+        rest /= 3;
+      }
+    }
+    const auto finalSign = [&](std::int64_t box)
+    {
+      const int constant = this->Constant[static_cast<std::size_t>(box)];
+      return constant != 0 ? constant : this->sign(box);
+    };
+    std::vector<std::int64_t> widened;
+    for (std::int64_t box = 0; box < static_cast<std::int64_t>(this->State.size()); ++box)
+    {
+      if ((this->state(box) & (Border | Kept)) ||
+        this->Constant[static_cast<std::size_t>(box)] != 0)
+      {
+        continue;
+      }
+      const int own = this->sign(box);
+      bool beside = false, alike = true;
+      for (const std::int64_t step : around)
+      {
+        const std::int64_t other = box + step;
+        if (!(this->state(other) & Border))
+        {
+          beside = beside || this->Constant[static_cast<std::size_t>(other)] != 0;
+          alike = alike && finalSign(other) == own;
+        }
+      }
+      if (beside && alike)
+      {
+        widened.push_back(box);
+      }
+    }
+    for (const std::int64_t box : widened)
+    {
+      this->Constant[static_cast<std::size_t>(box)] = static_cast<std::int8_t>(this->sign(box));
     }
   }
 

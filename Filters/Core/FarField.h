@@ -58,7 +58,8 @@ double medianSupport(
  * The sign of a region is that of the larger share of the vouched boxes around it. Where these have
  * both signs, data vouch down to 1/25 of the threshold, so that holes of a few knot spacings close.
  * Within a region the spline counts on where it has support and the sign of the region, and in the
- * boxes of data points always.
+ * boxes of data points always. Boxes beside a constant that have its sign and no other around them
+ * take it too: what shows at one centre reaches into the next box.
  *
  * @param support       S, scaled, lattice.numberOfCoefficients() values
  * @param coefficients  of f

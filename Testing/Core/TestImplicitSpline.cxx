@@ -16,7 +16,7 @@ ImplicitSpline<Dim> randomSpline()
   return { lattice, ipia::test::Random(21).vector(lattice.numberOfCoefficients(), -1, 1) };
 }
 
-/// The same with far cells of both signs, alone and in runs, some at the ends of rows.
+/// The same with far boxes of both signs, alone and in runs, some at the ends of rows.
 template <int Dim>
 ImplicitSpline<Dim> splineWithFarField()
 {
@@ -55,10 +55,18 @@ AxisPositions<Dim> samplePositions(const Lattice<Dim>& lattice, double from, dou
     }
     for (std::int64_t k = 0; k <= lattice.cells(a); ++k)
     {
-      const double knot = static_cast<double>(k) * lattice.Spacing[a];
-      if (knot >= low && knot <= high)
+      // Knots, where two half knots meet in the middle of a box, and borders of boxes; each also
+      // with the rounding that an origin far away gives.
+      for (const double shift : { 0.0, 0.25, 0.5, 0.75 })
       {
-        positions[a].push_back(knot);
+        const double x = (static_cast<double>(k) + shift) * lattice.Spacing[a];
+        for (const double rounded : { x, x * (1 - 1e-15), x + (x + 1e6 - 1e6 - x) })
+        {
+          if (rounded >= low && rounded <= high)
+          {
+            positions[a].push_back(rounded);
+          }
+        }
       }
     }
     std::sort(positions[a].begin(), positions[a].end());
