@@ -390,14 +390,15 @@ struct SampleKernel
     std::vector<double> alongX, window(static_cast<std::size_t>(Grid::Slices * sliceSize));
     std::array<std::int64_t, Grid::Slices> held;
     held.fill(-1);
-    std::vector<typename Grid::Run> runs;
+    const bool splineOnly = grid.Far.Sign.empty();
+    std::vector<typename Grid::Run> runs(1, { 0, n, 0 });
     std::int64_t next = block.FirstZ;
     for (std::int64_t z = block.FirstZ; z < block.LastZ; z = next)
     {
       const std::int64_t cell = grid.Z.Cell[static_cast<std::size_t>(z)];
       next = groupEnd(grid.Z, z, block.LastZ);
-      bool spline = false;
-      for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
+      bool spline = splineOnly;
+      for (std::int64_t y = block.FirstY; y < block.LastY && !spline; ++y)
       {
         for (std::int64_t k = z; k < next && !spline; ++k)
         {
@@ -421,7 +422,10 @@ struct SampleKernel
       {
         const std::int64_t offset = (y - block.FirstY) * padded, imageSlice = rows * n;
         Scalar* const out = values + (z * rows + y) * n;
-        grid.findSplineRuns(y, z, next, runs);
+        if (!splineOnly)
+        {
+          grid.findSplineRuns(y, z, next, runs);
+        }
         for (const auto& part : runs)
         {
           std::array<const double*, Grid::Slices> in;
@@ -431,7 +435,7 @@ struct SampleKernel
           }
           combineGroup(next - z, in, w, part.Begin, part.End, out, imageSlice);
         }
-        for (std::int64_t k = z; k < next; ++k)
+        for (std::int64_t k = z; k < next && !splineOnly; ++k)
         {
           const std::size_t row = grid.boxRow(y, k);
           Scalar* const slice = out + (k - z) * imageSlice;
