@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <iterator>
 
 namespace ipia
 {
@@ -134,6 +135,8 @@ struct SampleGrid
   void makeRuns()
   {
     this->RunBegin.assign(1, 0);
+    this->RunBegin.reserve(static_cast<std::size_t>(
+      this->ControlLattice.boxes(1) * this->ControlLattice.boxes(Dim - 1)));
     if (this->Far.Sign.empty() || this->X.Box.empty() || this->Y.Box.empty() || this->Z.Box.empty())
     {
       this->Runs.push_back({ 0, this->X.size(), 0 });
@@ -157,6 +160,10 @@ struct SampleGrid
         for (std::int64_t b = 0, end = 0; b < boxesAlongX; b = end)
         {
           end = b + 1;
+          while (end + 8 <= boxesAlongX && std::memcmp(sign + end, sign + end - 1, 8) == 0)
+          {
+            end += 8; // equal to the same bytes moved by one: all alike
+          }
           while (end < boxesAlongX && sign[end] == sign[b])
           {
             ++end;
@@ -181,12 +188,20 @@ struct SampleGrid
     std::int64_t y, std::int64_t z, std::int64_t endZ, std::vector<Run>& found) const
   {
     found.clear();
+    if (endZ - z == 1 || this->boxRow(y, z) == this->boxRow(y, endZ - 1))
+    {
+      const std::size_t row = this->boxRow(y, z);
+      std::copy_if(this->Runs.begin() + static_cast<std::ptrdiff_t>(this->RunBegin[row]),
+        this->Runs.begin() + static_cast<std::ptrdiff_t>(this->RunBegin[row + 1]),
+        std::back_inserter(found), [](const Run& run) { return run.Sign == 0; });
+      return;
+    }
     std::array<std::size_t, GroupSize> next{}, last{};
     std::size_t rows = 0;
     for (std::int64_t k = z; k < endZ; ++k)
     {
       const std::size_t row = this->boxRow(y, k);
-      if (rows == 0 || this->RunBegin[row + 1] != last[rows - 1])
+      if (this->hasSpline(row) && (rows == 0 || this->RunBegin[row + 1] != last[rows - 1]))
       {
         next[rows] = this->RunBegin[row];
         last[rows++] = this->RunBegin[row + 1];
@@ -200,7 +215,7 @@ struct SampleGrid
       }
       return next[i] < last[i];
     };
-    while (true)
+    while (rows > 0)
     {
       std::int64_t begin = this->X.size();
       for (std::size_t i = 0; i < rows; ++i)
