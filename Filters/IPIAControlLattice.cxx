@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IPIAControlLattice.h"
 
-#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkSignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,18 +14,55 @@ namespace ipia
 {
 namespace
 {
-/// Index of a knot cell among the cells of the control lattice, which has one more at either end.
-template <int Dim>
-vtkIdType latticeCell(const Lattice<Dim>& lattice, std::int64_t cell)
+void addFarField(const FarField& far, vtkFieldData* field)
 {
-  std::int64_t index = 0, stride = 1;
-  for (int a = 0; a < Dim; ++a)
+  vtkNew<vtkSignedCharArray> signs;
+  signs->SetName(FarFieldArrayName);
+  signs->SetNumberOfTuples(static_cast<vtkIdType>(far.Sign.size()));
+  std::copy(far.Sign.begin(), far.Sign.end(), signs->GetPointer(0));
+  field->AddArray(signs);
+  vtkNew<vtkDoubleArray> magnitude;
+  magnitude->SetName(FarFieldMagnitudeArrayName);
+  magnitude->InsertNextValue(far.Magnitude);
+  field->AddArray(magnitude);
+}
+
+/// Reads the far field of that many boxes, if there is one. Returns what is wrong, or an empty
+/// string.
+std::string readFarField(vtkFieldData* field, std::int64_t boxes, FarField& far)
+{
+  vtkDataArray* signs = field->GetArray(FarFieldArrayName);
+  if (!signs)
   {
-    index += (cell % lattice.cells(a) + 1) * stride;
-    cell /= lattice.cells(a);
-    stride *= lattice.Size[a] - 1;
+    return {};
   }
-  return index;
+  if (signs->GetNumberOfComponents() != 1 || signs->GetNumberOfTuples() != boxes)
+  {
+    return std::string("the field array ") + FarFieldArrayName + " of the control lattice has " +
+      std::to_string(signs->GetNumberOfTuples()) + " values of " +
+      std::to_string(signs->GetNumberOfComponents()) + " component(s); " + std::to_string(boxes) +
+      " of one are needed";
+  }
+  vtkDataArray* magnitude = field->GetArray(FarFieldMagnitudeArrayName);
+  if (!magnitude || magnitude->GetNumberOfValues() != 1 ||
+    !(magnitude->GetComponent(0, 0) > 0 && std::isfinite(magnitude->GetComponent(0, 0))))
+  {
+    return std::string("the control lattice has a field array ") + FarFieldArrayName +
+      ", but no field array " + FarFieldMagnitudeArrayName + " with one positive value";
+  }
+  far.Magnitude = magnitude->GetComponent(0, 0);
+  far.Sign.resize(static_cast<std::size_t>(boxes));
+  for (std::int64_t b = 0; b < boxes; ++b)
+  {
+    const double sign = signs->GetComponent(b, 0);
+    if (sign != -1 && sign != 0 && sign != 1)
+    {
+      return std::string("the field array ") + FarFieldArrayName +
+        " of the control lattice has values other than -1, 0 and 1";
+    }
+    far.Sign[static_cast<std::size_t>(b)] = static_cast<std::int8_t>(sign);
+  }
+  return {};
 }
 }
 
@@ -57,15 +95,7 @@ void toControlLattice(
 
   if (!spline.farField().Sign.empty())
   {
-    vtkNew<vtkDoubleArray> far;
-    far->SetName(FarFieldArrayName);
-    far->SetNumberOfTuples(image->GetNumberOfCells());
-    far->Fill(0);
-    for (std::int64_t c = 0; c < lattice.numberOfCells(); ++c)
-    {
-      far->SetValue(latticeCell(lattice, c), spline.farField().value(c));
-    }
-    image->GetCellData()->AddArray(far);
+    addFarField(spline.farField(), image->GetFieldData());
   }
 }
 
@@ -115,16 +145,10 @@ std::string fromControlLattice(
   }
 
   FarField far;
-  vtkDataArray* farValues = image->GetCellData()->GetArray(FarFieldArrayName);
-  if (farValues && farValues->GetNumberOfTuples() == image->GetNumberOfCells())
+  std::string wrong = readFarField(image->GetFieldData(), lattice.numberOfBoxes(), far);
+  if (!wrong.empty())
   {
-    far.Sign.resize(static_cast<std::size_t>(lattice.numberOfCells()));
-    for (std::int64_t c = 0; c < lattice.numberOfCells(); ++c)
-    {
-      const double v = farValues->GetComponent(latticeCell(lattice, c), 0);
-      far.Magnitude = std::max(far.Magnitude, std::abs(v));
-      far.Sign[static_cast<std::size_t>(c)] = static_cast<std::int8_t>((v > 0) - (v < 0));
-    }
+    return wrong;
   }
   spline = std::make_unique<ImplicitSpline<Dim>>(lattice, std::move(coefficients), std::move(far));
   return {};

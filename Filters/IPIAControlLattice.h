@@ -61,6 +61,7 @@ struct Placement
 /// Names of the arrays of a control lattice.
 constexpr const char* CoefficientArrayName = "Coefficient";
 constexpr const char* FarFieldArrayName = "FarField";
+constexpr const char* FarFieldMagnitudeArrayName = "FarFieldMagnitude";
 
 /// Writes a spline as a control lattice: origin lo - h, spacing h, dimensions N.
 template <int Dim>

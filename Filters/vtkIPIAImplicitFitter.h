@@ -35,13 +35,18 @@
  *
  * ### Far field
  * Where no row touches a coefficient it stays 0, and contour filters would draw a second sheet
- * along the inner side of the data. Knot cells with little support (sum_i B_i sum_c B_i(x_c) over
- * the centres x_c of the cells that hold rows is below 1/20 of its median at the data, however
- * many rows they hold) therefore take a constant: the OffsetValue used, with the sign of f around
- * their connected region. A region that meets both signs keeps the spline down to 1/25 of that
- * support, so that small holes close; what is left and still meets both (an open surface, a wide
- * hole) takes that of the larger share and a warning says so. So do cells of regions of one sign
- * that no point vouches for: bubbles that many iterations raise beside the data.
+ * along the inner side of the data; ripples beside the data would become bubbles. The sign of f
+ * therefore holds only where data vouch for it: just outside and just inside the points, and
+ * wherever these lead through supported places without a change of sign. Every connected region of
+ * other places takes a constant, the OffsetValue used, with the sign of what is around it, where
+ * f has the other sign or no support.
+ *
+ * Places are boxes of half a knot spacing about the knots and the middles between them, on which
+ * the default samples lie. Supported are those where sum_i B_i sum_c B_i(x_c), over the centres
+ * x_c of the knot cells that hold rows, is at least 1/50 of its median at the data. A region that
+ * meets both signs keeps the spline down to 1/25 of that support, so that small holes close; what
+ * is left and still meets both (an open surface, a wide hole) takes the sign of the larger share
+ * and a warning says so. Boxes beside a constant with no other sign around them take it as well.
  *
  * ### Input
  * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of
@@ -60,9 +65,11 @@
  * below as field data. Origin and last point are the ends of the domain. Any sub-extent can be
  * asked for. Port 1: the points that were fitted, with all their arrays, and `Residual` (f) and
  * `Distance` (f / |grad f|). Port 2: the control lattice, a vtkImageData with point array
- * `Coefficient`, origin lo - h, spacing h and dimensions N, on domain [lo, hi], and cell array
- * `FarField`. vtkIPIAImplicitFunction takes it; vtkImageBSplineInterpolator of degree 3
- * interpolates it.
+ * `Coefficient`, origin lo - h, spacing h and dimensions N, on domain [lo, hi], and the far field
+ * as field data: `FarField`, one signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1)
+ * (2 (N_z - 3) + 1) boxes (no third factor in 2-D), x fastest, -1 or 1 where f is that sign times
+ * `FarFieldMagnitude` (one double), 0 where the spline counts. vtkIPIAImplicitFunction takes it;
+ * vtkImageBSplineInterpolator of degree 3 interpolates the spline.
  *
  * ### Two dimensions
  * If all points lie in a plane perpendicular to an axis and their normals in that plane, f is a

@@ -7,15 +7,16 @@
 
 #include <atomic>
 #include <cstring>
+#include <iterator>
 
 namespace ipia
 {
 namespace
 {
-/// Cell and weights of every sample position of one axis.
+/// Cell, box and weights of every sample position of one axis.
 struct AxisTable
 {
-  std::vector<std::int64_t> Cell;
+  std::vector<std::int64_t> Cell, Box;
   std::vector<BasisValues> Weight;
 
   std::int64_t size() const { return static_cast<std::int64_t>(this->Cell.size()); }
@@ -27,10 +28,12 @@ AxisTable makeAxisTable(
 {
   AxisTable table;
   table.Cell.reserve(positions.size());
+  table.Box.reserve(positions.size());
   table.Weight.reserve(positions.size());
   for (double x : positions)
   {
-    const AxisLocation at = lattice.locate(std::min(std::max(x, 0.0), lattice.extent(axis)), axis);
+    const double inside = std::min(std::max(x, 0.0), lattice.extent(axis));
+    const AxisLocation at = lattice.locate(inside, axis);
     BasisValues w = cubicBasisDerivative(at.T, derivative ? 1 : 0);
     if (derivative)
     {
@@ -40,6 +43,7 @@ AxisTable makeAxisTable(
       }
     }
     table.Cell.push_back(at.Cell);
+    table.Box.push_back(lattice.locateBox(inside, axis));
     table.Weight.push_back(w);
   }
   return table;
@@ -91,6 +95,9 @@ struct SampleBlock
 constexpr std::int64_t BlockRows = 16;
 constexpr std::int64_t BlockSlices = 64;
 
+/// Neighbouring samples along y or z that share what they load.
+constexpr std::int64_t GroupSize = 4;
+
 /// All that the samples of one grid share.
 template <int Dim>
 struct SampleGrid
@@ -103,7 +110,7 @@ struct SampleGrid
   bool Derivative;
   AxisTable X, Y, Z;
   SampleRow Row;
-  /// The far field by runs of samples: for each row of cells, [begin, end) and sign of each run.
+  /// The far field by runs of samples: for each row of boxes, [begin, end) and sign of each run.
   struct Run
   {
     std::int64_t Begin, End;
@@ -112,51 +119,129 @@ struct SampleGrid
   std::vector<Run> Runs;
   std::vector<std::size_t> RunBegin;
 
-  std::int64_t cellRow(std::int64_t y, std::int64_t z) const
+  /// The row of boxes that a row of samples lies in, among those that the samples reach.
+  std::size_t boxRow(std::int64_t y, std::int64_t z) const
   {
-    return this->Z.Cell[static_cast<std::size_t>(z)] * this->ControlLattice.cells(1) +
-      this->Y.Cell[static_cast<std::size_t>(y)];
+    if (this->Far.Sign.empty())
+    {
+      return 0;
+    }
+    const std::int64_t rows = this->Y.Box.back() - this->Y.Box.front() + 1;
+    return static_cast<std::size_t>(
+      (this->Z.Box[static_cast<std::size_t>(z)] - this->Z.Box.front()) * rows +
+      this->Y.Box[static_cast<std::size_t>(y)] - this->Y.Box.front());
   }
 
   void makeRuns()
   {
-    const std::int64_t cellsAlongX = this->ControlLattice.cells(0);
-    const std::int64_t rows = this->ControlLattice.numberOfCells() / cellsAlongX;
-    // The samples of cell c are [first[c], first[c + 1]).
-    std::vector<std::int64_t> first(static_cast<std::size_t>(cellsAlongX) + 1);
-    for (std::int64_t c = 0; c <= cellsAlongX; ++c)
-    {
-      first[static_cast<std::size_t>(c)] =
-        std::lower_bound(this->X.Cell.begin(), this->X.Cell.end(), c) - this->X.Cell.begin();
-    }
     this->RunBegin.assign(1, 0);
-    for (std::int64_t row = 0; row < rows; ++row)
+    this->RunBegin.reserve(static_cast<std::size_t>(
+      this->ControlLattice.boxes(1) * this->ControlLattice.boxes(Dim - 1)));
+    if (this->Far.Sign.empty() || this->X.Box.empty() || this->Y.Box.empty() || this->Z.Box.empty())
     {
-      for (std::int64_t c = 0; c < cellsAlongX;)
+      this->Runs.push_back({ 0, this->X.size(), 0 });
+      this->RunBegin.push_back(1);
+      return;
+    }
+    // The samples of box b are [first[b], first[b + 1]).
+    const std::int64_t boxesAlongX = this->ControlLattice.boxes(0);
+    std::vector<std::int64_t> first(static_cast<std::size_t>(boxesAlongX) + 1);
+    for (std::int64_t b = 0; b <= boxesAlongX; ++b)
+    {
+      first[static_cast<std::size_t>(b)] =
+        std::lower_bound(this->X.Box.begin(), this->X.Box.end(), b) - this->X.Box.begin();
+    }
+    for (std::int64_t z = this->Z.Box.front(); z <= this->Z.Box.back(); ++z)
+    {
+      for (std::int64_t y = this->Y.Box.front(); y <= this->Y.Box.back(); ++y)
       {
-        const int sign = this->Far.Sign.empty()
-          ? 0
-          : this->Far.Sign[static_cast<std::size_t>(row * cellsAlongX + c)];
-        std::int64_t end = c + 1;
-        while (end < cellsAlongX && !this->Far.Sign.empty() &&
-          this->Far.Sign[static_cast<std::size_t>(row * cellsAlongX + end)] == sign)
+        const std::int8_t* sign =
+          this->Far.Sign.data() + (z * this->ControlLattice.boxes(1) + y) * boxesAlongX;
+        for (std::int64_t b = 0, end = 0; b < boxesAlongX; b = end)
         {
-          ++end;
+          end = b + 1;
+          while (end + 8 <= boxesAlongX && std::memcmp(sign + end, sign + end - 1, 8) == 0)
+          {
+            end += 8; // equal to the same bytes moved by one: all alike
+          }
+          while (end < boxesAlongX && sign[end] == sign[b])
+          {
+            ++end;
+          }
+          this->Runs.push_back(
+            { first[static_cast<std::size_t>(b)], first[static_cast<std::size_t>(end)], sign[b] });
         }
-        end = this->Far.Sign.empty() ? cellsAlongX : end;
-        this->Runs.push_back(
-          { first[static_cast<std::size_t>(c)], first[static_cast<std::size_t>(end)], sign });
-        c = end;
+        this->RunBegin.push_back(this->Runs.size());
       }
-      this->RunBegin.push_back(this->Runs.size());
     }
   }
 
-  bool hasSpline(std::int64_t row) const
+  bool hasSpline(std::size_t row) const
   {
-    const std::size_t begin = this->RunBegin[static_cast<std::size_t>(row)];
-    return this->RunBegin[static_cast<std::size_t>(row) + 1] > begin + 1 ||
-      this->Runs[begin].Sign == 0;
+    const std::size_t begin = this->RunBegin[row];
+    return this->RunBegin[row + 1] > begin + 1 || this->Runs[begin].Sign == 0;
+  }
+
+  /// The runs of samples along x where the spline counts in any of the rows z to endZ at @a y, at
+  /// most GroupSize; these share a knot cell along z, but not always a box.
+  void findSplineRuns(
+    std::int64_t y, std::int64_t z, std::int64_t endZ, std::vector<Run>& found) const
+  {
+    found.clear();
+    if (endZ - z == 1 || this->boxRow(y, z) == this->boxRow(y, endZ - 1))
+    {
+      const std::size_t row = this->boxRow(y, z);
+      std::copy_if(this->Runs.begin() + static_cast<std::ptrdiff_t>(this->RunBegin[row]),
+        this->Runs.begin() + static_cast<std::ptrdiff_t>(this->RunBegin[row + 1]),
+        std::back_inserter(found), [](const Run& run) { return run.Sign == 0; });
+      return;
+    }
+    std::array<std::size_t, GroupSize> next{}, last{};
+    std::size_t rows = 0;
+    for (std::int64_t k = z; k < endZ; ++k)
+    {
+      const std::size_t row = this->boxRow(y, k);
+      if (this->hasSpline(row) && (rows == 0 || this->RunBegin[row + 1] != last[rows - 1]))
+      {
+        next[rows] = this->RunBegin[row];
+        last[rows++] = this->RunBegin[row + 1];
+      }
+    }
+    const auto skipFar = [&](std::size_t i)
+    {
+      while (next[i] < last[i] && this->Runs[next[i]].Sign != 0)
+      {
+        ++next[i];
+      }
+      return next[i] < last[i];
+    };
+    while (rows > 0)
+    {
+      std::int64_t begin = this->X.size();
+      for (std::size_t i = 0; i < rows; ++i)
+      {
+        begin = skipFar(i) ? std::min(begin, this->Runs[next[i]].Begin) : begin;
+      }
+      if (begin == this->X.size())
+      {
+        return;
+      }
+      // The run grows by all that it meets.
+      std::int64_t end = begin;
+      for (bool grown = true; grown;)
+      {
+        grown = false;
+        for (std::size_t i = 0; i < rows; ++i)
+        {
+          if (skipFar(i) && this->Runs[next[i]].Begin <= end)
+          {
+            end = std::max(end, this->Runs[next[i]++].End);
+            grown = true;
+          }
+        }
+      }
+      found.push_back({ begin, end, 0 });
+    }
   }
 };
 
@@ -168,9 +253,6 @@ template <int Dim, typename Scalar>
 struct SampleKernel
 {
   using Grid = SampleGrid<Dim>;
-
-  /// Neighbouring samples along y or z that share what they load.
-  static constexpr std::int64_t GroupSize = 4;
 
   /// The end of the group that begins with sample @a i: up to GroupSize of one cell.
   static std::int64_t groupEnd(const AxisTable& table, std::int64_t i, std::int64_t last)
@@ -323,15 +405,20 @@ struct SampleKernel
     std::vector<double> alongX, window(static_cast<std::size_t>(Grid::Slices * sliceSize));
     std::array<std::int64_t, Grid::Slices> held;
     held.fill(-1);
+    const bool splineOnly = grid.Far.Sign.empty();
+    std::vector<typename Grid::Run> runs(1, { 0, n, 0 });
     std::int64_t next = block.FirstZ;
     for (std::int64_t z = block.FirstZ; z < block.LastZ; z = next)
     {
       const std::int64_t cell = grid.Z.Cell[static_cast<std::size_t>(z)];
       next = groupEnd(grid.Z, z, block.LastZ);
-      bool spline = false;
-      for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
+      bool spline = splineOnly;
+      for (std::int64_t y = block.FirstY; y < block.LastY && !spline; ++y)
       {
-        spline = spline || grid.hasSpline(grid.cellRow(y, z));
+        for (std::int64_t k = z; k < next && !spline; ++k)
+        {
+          spline = grid.hasSpline(grid.boxRow(y, k));
+        }
       }
       std::array<const double*, Grid::Slices> slices{};
       for (std::int64_t k = 0; k < Grid::Slices && spline; ++k)
@@ -348,29 +435,33 @@ struct SampleKernel
       const BasisValues* w = grid.Z.Weight.data() + z;
       for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
       {
-        const auto row = static_cast<std::size_t>(grid.cellRow(y, z));
         const std::int64_t offset = (y - block.FirstY) * padded, imageSlice = rows * n;
-        Scalar* out = values + (z * rows + y) * n;
-        for (std::size_t r = grid.RunBegin[row]; r < grid.RunBegin[row + 1]; ++r)
+        Scalar* const out = values + (z * rows + y) * n;
+        if (!splineOnly)
         {
-          const auto part = grid.Runs[r];
-          if (part.Sign != 0)
+          grid.findSplineRuns(y, z, next, runs);
+        }
+        for (const auto& part : runs)
+        {
+          std::array<const double*, Grid::Slices> in;
+          for (std::size_t k = 0; k < Grid::Slices; ++k)
           {
-            const double constant = grid.Derivative ? 0.0 : part.Sign * grid.Far.Magnitude;
-            for (std::int64_t k = 0; k < next - z; ++k)
+            in[k] = slices[k] + offset;
+          }
+          combineGroup(next - z, in, w, part.Begin, part.End, out, imageSlice);
+        }
+        for (std::int64_t k = z; k < next && !splineOnly; ++k)
+        {
+          const std::size_t row = grid.boxRow(y, k);
+          Scalar* const slice = out + (k - z) * imageSlice;
+          for (std::size_t r = grid.RunBegin[row]; r < grid.RunBegin[row + 1]; ++r)
+          {
+            const auto& part = grid.Runs[r];
+            if (part.Sign != 0)
             {
-              Scalar* const slice = out + k * imageSlice;
+              const double constant = grid.Derivative ? 0.0 : part.Sign * grid.Far.Magnitude;
               std::fill(slice + part.Begin, slice + part.End, static_cast<Scalar>(constant));
             }
-          }
-          else
-          {
-            std::array<const double*, Grid::Slices> in;
-            for (std::size_t k = 0; k < Grid::Slices; ++k)
-            {
-              in[k] = slices[k] + offset;
-            }
-            combineGroup(next - z, in, w, part.Begin, part.End, out, imageSlice);
           }
         }
       }
@@ -383,13 +474,13 @@ template <int Dim>
 struct ImplicitSpline<Dim>::Nearest
 {
   std::array<AxisLocation, Dim> At;
-  std::int64_t Cell;
+  std::int64_t Box;
   Point<Dim> Away; ///< from the nearest point of the domain to the position
   double Distance;
 
   Nearest(const Lattice<Dim>& lattice, const Point<Dim>& position)
   {
-    Index<Dim> cell;
+    Index<Dim> box;
     for (int a = 0; a < Dim; ++a)
     {
       const double inside = std::min(std::max(position[a], 0.0), lattice.extent(a));
@@ -397,9 +488,9 @@ struct ImplicitSpline<Dim>::Nearest
       // An end of the domain that rounding has put outside is not outside.
       const double away = position[a] - inside;
       this->Away[a] = std::abs(away) <= 1e-12 * lattice.extent(a) ? 0.0 : away;
-      cell[a] = this->At[a].Cell;
+      box[a] = lattice.locateBox(inside, a);
     }
-    this->Cell = lattice.cellIndex(cell);
+    this->Box = lattice.boxIndex(box);
     this->Distance = this->Away.norm();
   }
 };
@@ -469,8 +560,8 @@ template <int Dim>
 double ImplicitSpline<Dim>::value(const Point<Dim>& position) const
 {
   const Nearest nearest(this->ControlLattice, position);
-  const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Cell) != 0;
-  const double f = far ? this->Far.value(nearest.Cell) : this->splineSum(nearest.At, nullptr);
+  const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Box) != 0;
+  const double f = far ? this->Far.value(nearest.Box) : this->splineSum(nearest.At, nullptr);
   return f < 0 ? f - nearest.Distance : f + nearest.Distance;
 }
 
@@ -486,9 +577,9 @@ template <int Dim>
 double ImplicitSpline<Dim>::valueAndGradient(const Point<Dim>& position, Point<Dim>& gradient) const
 {
   const Nearest nearest(this->ControlLattice, position);
-  const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Cell) != 0;
+  const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Box) != 0;
   gradient.setZero();
-  const double f = far ? this->Far.value(nearest.Cell) : this->splineSum(nearest.At, &gradient);
+  const double f = far ? this->Far.value(nearest.Box) : this->splineSum(nearest.At, &gradient);
   if (nearest.Distance > 0)
   {
     for (int a = 0; a < Dim; ++a)
@@ -509,8 +600,8 @@ bool ImplicitSpline<Dim>::sample(const AxisPositions<Dim>& positions, Scalar* va
   { return makeAxisTable(this->ControlLattice, axis, positions[axis], derivativeAxis == axis); };
   const AxisTable alongX = table(0);
   SampleGrid<Dim> grid{ this->ControlLattice, this->Coefficients.data(), this->Far,
-    derivativeAxis >= 0, alongX, table(1), { { 0 }, { BasisValues{ 1 } } }, SampleRow(alongX), {},
-    {} };
+    derivativeAxis >= 0, alongX, table(1), { { 0 }, { 0 }, { BasisValues{ 1 } } },
+    SampleRow(alongX), {}, {} };
   if (Dim == 3)
   {
     grid.Z = table(Dim - 1);

@@ -21,8 +21,8 @@ namespace ipia
 /// Number of coefficients that one knot cell has along an axis: degree + 1.
 constexpr int Order = 4;
 
-/// A position this little below a knot, in knot spacings, counts as on it. The far field jumps from
-/// cell to cell, and every other sample lies on a knot: rounding must not choose its cell.
+/// A position this little below a knot or a border of boxes, in knot spacings, counts as on it: the
+/// far field jumps from box to box, and rounding must not choose the box of a position.
 constexpr double KnotTolerance = 1e-6;
 
 /// Where a position lies on one axis: its knot cell and the local coordinate in [-KnotTolerance,
@@ -76,6 +76,29 @@ struct Lattice
     return n;
   }
 
+  /// Box i has the width h / 2 and the centre i h / 2; the domain halves the first and the last.
+  std::int64_t boxes(int axis) const { return 2 * this->cells(axis) + 1; }
+
+  std::int64_t numberOfBoxes() const
+  {
+    std::int64_t n = 1;
+    for (int a = 0; a < Dim; ++a)
+    {
+      n *= this->boxes(a);
+    }
+    return n;
+  }
+
+  Index<Dim> numberOfBoxesPerAxis() const
+  {
+    Index<Dim> n;
+    for (int a = 0; a < Dim; ++a)
+    {
+      n[a] = this->boxes(a);
+    }
+    return n;
+  }
+
   /// Flat index of a coefficient; also that of the first coefficient of the knot cell @a i.
   std::int64_t coefficientIndex(const Index<Dim>& i) const { return flat(i, this->Size); }
 
@@ -92,6 +115,17 @@ struct Lattice
     const double last = static_cast<double>(this->cells(axis) - 1);
     const double cell = std::min(std::max(std::floor(u + KnotTolerance), 0.0), last);
     return { static_cast<std::int64_t>(cell), u - cell };
+  }
+
+  std::int64_t boxIndex(const Index<Dim>& b) const { return flat(b, this->numberOfBoxesPerAxis()); }
+
+  /// The box of a position, half open as the knot cells are; that of the nearest one outside.
+  std::int64_t locateBox(double position, int axis) const
+  {
+    const double u = position / this->Spacing[axis];
+    const double last = static_cast<double>(this->boxes(axis) - 1);
+    const double box = std::floor(2 * (u + KnotTolerance) + 0.5);
+    return static_cast<std::int64_t>(std::min(std::max(box, 0.0), last));
   }
 
   /// True within the closed domain; rounding of the upper bound is forgiven.

@@ -10,6 +10,8 @@ using namespace ipia;
 using ipia::test::OrientedPoints;
 using ipia::test::spherePoints;
 
+const double Threshold = FarFieldOptions().Threshold;
+
 /// The domain of these tests is [0, 4]^Dim.
 template <int Dim>
 Lattice<Dim> cube(std::int64_t cells)
@@ -96,22 +98,22 @@ Regions countRegions(const ImplicitSpline<Dim>& function)
   return regions;
 }
 
-/// Calls check(sign, centre) for every knot cell.
+/// Calls check(sign, centre) for every box.
 template <int Dim, typename Check>
-void forCells(const ImplicitSpline<Dim>& function, const Check& check)
+void forBoxes(const ImplicitSpline<Dim>& function, const Check& check)
 {
   const Lattice<Dim>& lattice = function.lattice();
-  ASSERT_EQ(function.farField().Sign.size(), static_cast<std::size_t>(lattice.numberOfCells()));
-  for (std::int64_t c = 0; c < lattice.numberOfCells(); ++c)
+  ASSERT_EQ(function.farField().Sign.size(), static_cast<std::size_t>(lattice.numberOfBoxes()));
+  for (std::int64_t b = 0; b < lattice.numberOfBoxes(); ++b)
   {
     Point<Dim> centre;
-    std::int64_t rest = c;
+    std::int64_t rest = b;
     for (int a = 0; a < Dim; ++a)
     {
-      centre[a] = (static_cast<double>(rest % lattice.cells(a)) + 0.5) * lattice.Spacing[a];
-      rest /= lattice.cells(a);
+      centre[a] = static_cast<double>(rest % lattice.boxes(a)) / 2 * lattice.Spacing[a];
+      rest /= lattice.boxes(a);
     }
-    check(function.farField().Sign[static_cast<std::size_t>(c)], centre);
+    check(function.farField().Sign[static_cast<std::size_t>(b)], centre);
   }
 }
 
@@ -131,16 +133,16 @@ TYPED_TEST(FarFieldTest, ClosedShapeIsNegativeInsidePositiveOutside)
 {
   constexpr int Dim = TypeParam::value;
   constexpr double radius = 1.5;
-  const FitResult<Dim> result =
-    fit<Dim>(cube<Dim>(32), spherePoints<Dim>(middle<Dim>(), radius, Dim == 2 ? 200 : 4000), 0.05);
+  const FitResult<Dim> result = fit<Dim>(
+    cube<Dim>(32), spherePoints<Dim>(middle<Dim>(), radius, Dim == 2 ? 200 : 4000), Threshold);
   int inside = 0, outside = 0;
-  forCells<Dim>(result.Function,
+  forBoxes<Dim>(result.Function,
     [&](int sign, const Point<Dim>& x)
     {
       const double distance = (x - middle<Dim>()).norm() - radius;
       if (std::abs(distance) > 5 * 4.0 / 32)
       {
-        EXPECT_EQ(sign, distance < 0 ? -1 : 1) << "no row reaches this cell";
+        EXPECT_EQ(sign, distance < 0 ? -1 : 1) << "no row reaches this box";
       }
       if (std::abs(distance) < 0.25 * 4.0 / 32)
       {
@@ -180,7 +182,7 @@ TYPED_TEST(FarFieldTest, NestedSpheresEncloseAShell)
   OrientedPoints<Dim> hollow = spherePoints<Dim>(middle<Dim>(), 0.8, Dim == 2 ? 120 : 1800);
   hollow.Normals *= -1;
   points.append(hollow);
-  const FitResult<Dim> result = fit<Dim>(cube<Dim>(40), points, 0.05);
+  const FitResult<Dim> result = fit<Dim>(cube<Dim>(40), points, Threshold);
   EXPECT_GT(result.Function.value(middle<Dim>()), 0);
   EXPECT_LT(result.Function.value(middle<Dim>() + 1.25 * Point<Dim>::Unit(1)), 0);
   EXPECT_GT(result.Function.value(Point<Dim>::Constant(0.1)), 0);
@@ -202,7 +204,7 @@ TYPED_TEST(FarFieldTest, AnOpenSheetHasAMixedRegion)
       half.append({ all.Positions.col(k), all.Normals.col(k) });
     }
   }
-  EXPECT_EQ(fit<Dim>(cube<Dim>(32), half, 0.05).Function.farField().NumberOfMixedRegions, 1);
+  EXPECT_EQ(fit<Dim>(cube<Dim>(32), half, Threshold).Function.farField().NumberOfMixedRegions, 1);
 }
 
 TYPED_TEST(FarFieldTest, ASheetAcrossTheDomainHasNone)
@@ -218,7 +220,7 @@ TYPED_TEST(FarFieldTest, ASheetAcrossTheDomainHasNone)
     sheet.Positions(Dim - 1, k) = 2.1;
     sheet.Normals(Dim - 1, k) = 1;
   }
-  const FitResult<Dim> result = fit<Dim>(lattice, sheet, 0.05);
+  const FitResult<Dim> result = fit<Dim>(lattice, sheet, Threshold);
   EXPECT_EQ(result.Function.farField().NumberOfMixedRegions, 0);
   Point<Dim> x = middle<Dim>();
   x[Dim - 1] = 0.2;
@@ -275,7 +277,7 @@ TYPED_TEST(FarFieldTest, ASignThatNothingVouchesForIsFlipped)
   const FarField held = computeFarField<Dim>(lattice, support, c, corner, nothing, centre, options);
   EXPECT_EQ(ImplicitSpline<Dim>(lattice, c, held).value(middle<Dim>()),
     ImplicitSpline<Dim>(lattice, c).value(middle<Dim>()))
-    << "cells with data are left alone";
+    << "boxes with data are left alone";
 }
 
 TYPED_TEST(FarFieldTest, MedianSupportIsTheMedianOverThePoints)

@@ -16,14 +16,14 @@ ImplicitSpline<Dim> randomSpline()
   return { lattice, ipia::test::Random(21).vector(lattice.numberOfCoefficients(), -1, 1) };
 }
 
-/// The same with far cells of both signs, alone and in runs, some at the ends of rows.
+/// The same with far boxes of both signs, alone and in runs, some at the ends of rows.
 template <int Dim>
 ImplicitSpline<Dim> splineWithFarField()
 {
   const ImplicitSpline<Dim> spline = randomSpline<Dim>();
   FarField far;
   far.Magnitude = 0.625;
-  far.Sign.assign(static_cast<std::size_t>(spline.lattice().numberOfCells()), 0);
+  far.Sign.assign(static_cast<std::size_t>(spline.lattice().numberOfBoxes()), 0);
   ipia::test::Random random(22);
   std::int8_t sign = 0;
   for (std::int8_t& s : far.Sign)
@@ -34,7 +34,7 @@ ImplicitSpline<Dim> splineWithFarField()
     }
     s = sign;
   }
-  std::fill(far.Sign.begin(), far.Sign.begin() + spline.lattice().cells(0), std::int8_t(-1));
+  std::fill(far.Sign.begin(), far.Sign.begin() + spline.lattice().boxes(0), std::int8_t(-1));
   return { spline.lattice(), spline.coefficients(), far };
 }
 
@@ -55,10 +55,18 @@ AxisPositions<Dim> samplePositions(const Lattice<Dim>& lattice, double from, dou
     }
     for (std::int64_t k = 0; k <= lattice.cells(a); ++k)
     {
-      const double knot = static_cast<double>(k) * lattice.Spacing[a];
-      if (knot >= low && knot <= high)
+      // Knots, where two half knots meet in the middle of a box, and borders of boxes; each also
+      // with the rounding that an origin far away gives.
+      for (const double shift : { 0.0, 0.25, 0.5, 0.75 })
       {
-        positions[a].push_back(knot);
+        const double x = (static_cast<double>(k) + shift) * lattice.Spacing[a];
+        for (const double rounded : { x, x * (1 - 1e-15), x + (x + 1e6 - 1e6 - x) })
+        {
+          if (rounded >= low && rounded <= high)
+          {
+            positions[a].push_back(rounded);
+          }
+        }
       }
     }
     std::sort(positions[a].begin(), positions[a].end());
@@ -354,7 +362,7 @@ TYPED_TEST(ImplicitSplineTest, TheGradientPointsAwayFromAFarFieldAtTheBorder)
   const ImplicitSpline<Dim> plain = randomSpline<Dim>();
   FarField far;
   far.Magnitude = 2;
-  far.Sign.assign(static_cast<std::size_t>(plain.lattice().numberOfCells()), std::int8_t(-1));
+  far.Sign.assign(static_cast<std::size_t>(plain.lattice().numberOfBoxes()), std::int8_t(-1));
   const ImplicitSpline<Dim> spline(plain.lattice(), plain.coefficients(), far);
   const Point<Dim> middle = ipia::test::extents(plain.lattice()) / 2;
   EXPECT_EQ(spline.value(middle), -2);

@@ -62,6 +62,33 @@ TYPED_TEST(LatticeTest, TheLastCellIsClosed)
   }
 }
 
+TYPED_TEST(LatticeTest, LocatesBoxesWhateverTheRounding)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = ipia::test::anisotropicLattice<Dim>();
+  std::int64_t number = 1;
+  for (int a = 0; a < Dim; ++a)
+  {
+    const double h = lattice.Spacing[a];
+    const std::int64_t boxes = 2 * lattice.cells(a) + 1;
+    EXPECT_EQ(lattice.boxes(a), boxes);
+    number *= boxes;
+    for (std::int64_t i = 0; i < boxes; ++i)
+    {
+      const double centre = static_cast<double>(i) * h / 2;
+      for (const double rounding : { -1e-10 * h, 0.0, 1e-10 * h })
+      {
+        EXPECT_EQ(lattice.locateBox(centre + rounding, a), i) << "a default sample";
+        EXPECT_EQ(lattice.locateBox(centre - h / 4 + rounding, a), i) << "on the border of two";
+      }
+      EXPECT_EQ(lattice.locateBox(centre + 0.2499 * h, a), i);
+    }
+    EXPECT_EQ(lattice.locateBox(-h, a), 0);
+    EXPECT_EQ(lattice.locateBox(lattice.extent(a) + h, a), boxes - 1);
+  }
+  EXPECT_EQ(lattice.numberOfBoxes(), number);
+}
+
 TYPED_TEST(LatticeTest, TheDomainIsClosed)
 {
   constexpr int Dim = TypeParam::value;

@@ -9,11 +9,11 @@
 
 #include "vtkIPIAImplicitFitter.h"
 
-#include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
@@ -318,7 +318,7 @@ inline bool OutputsAreSound(vtkIPIAImplicitFitter* fitter)
     IsFinite(image->GetFieldData()) && IsFinite(points->GetPoints()->GetData()) &&
     IsFinite(points->GetPointData()->GetArray("Residual")) &&
     IsFinite(points->GetPointData()->GetArray("Distance")) && IsFinite(lattice->GetPointData()) &&
-    IsFinite(lattice->GetCellData());
+    IsFinite(lattice->GetFieldData());
 }
 
 /// Same type, size and bits.
@@ -352,11 +352,20 @@ inline bool SameImage(vtkImageData* a, vtkImageData* b)
     SameArray(a->GetPointData()->GetScalars(), b->GetPointData()->GetScalars());
 }
 
-/// Same image, coefficients and residuals, bit for bit.
+/// The same far field, or none in both.
+inline bool SameFarField(vtkImageData* a, vtkImageData* b)
+{
+  vtkDataArray* first = a->GetFieldData()->GetArray("FarField");
+  vtkDataArray* second = b->GetFieldData()->GetArray("FarField");
+  return (!first && !second) || SameArray(first, second);
+}
+
+/// Same image, coefficients, far field and residuals, bit for bit.
 inline bool SameOutputs(vtkIPIAImplicitFitter* a, vtkIPIAImplicitFitter* b)
 {
   return SameImage(a->GetOutput(), b->GetOutput()) &&
     SameImage(ControlLattice(a), ControlLattice(b)) &&
+    SameFarField(ControlLattice(a), ControlLattice(b)) &&
     SameArray(FittedPoints(a)->GetPointData()->GetArray("Residual"),
       FittedPoints(b)->GetPointData()->GetArray("Residual"));
 }

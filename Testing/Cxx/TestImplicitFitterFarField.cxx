@@ -7,7 +7,7 @@
 #include "IPIATestTopology.h"
 #include "IPIATestUtilities.h"
 
-#include "vtkCellData.h"
+#include "vtkFieldData.h"
 #include "vtkIPIAImplicitFunction.h"
 #include "vtkSampleFunction.h"
 
@@ -33,7 +33,7 @@ vtkSmartPointer<vtkImageData> WithoutFarField(vtkImageData* lattice)
 {
   auto bare = vtkSmartPointer<vtkImageData>::New();
   bare->ShallowCopy(lattice);
-  bare->GetCellData()->RemoveArray("FarField");
+  bare->GetFieldData()->RemoveArray("FarField");
   return bare;
 }
 
@@ -47,7 +47,7 @@ void TestSurface(ipiatest::Checks& checks, const ipiatest::KnownSurface& surface
   fitter->Update();
   vtkImageData* lattice = ipiatest::ControlLattice(fitter);
   const std::string name = Text(surface.Name, ", constraint ", constraint);
-  checks.That(lattice->GetCellData()->GetArray("FarField") != nullptr, name + " has a far field");
+  checks.That(lattice->GetFieldData()->GetArray("FarField") != nullptr, name + " has a far field");
   checks.Equal(CountComponents(lattice, fitter->GetOutput()), surface.Components,
     name + ": components with the far field");
   const int bare = CountComponents(WithoutFarField(lattice), fitter->GetOutput());

@@ -7,8 +7,6 @@
 #include "IPIATestTopology.h"
 #include "IPIATestUtilities.h"
 
-#include <string>
-
 int TestImplicitFitterScans(int argc, char* argv[])
 {
   ipiatest::Checks checks;
@@ -22,11 +20,6 @@ int TestImplicitFitterScans(int argc, char* argv[])
     for (int constraint :
       { vtkIPIAImplicitFitter::OutwardOffset, vtkIPIAImplicitFitter::TwoSidedOffset })
     {
-      // Outward rows alone leave the armadillo's claws to ripples: nine components, a known limit.
-      if (constraint == vtkIPIAImplicitFitter::OutwardOffset && std::string(name) == "armadillo")
-      {
-        continue;
-      }
       auto fitter = ipiatest::NewClassicFitter(cloud, 70);
       fitter->SetNormalConstraint(constraint);
       fitter->SetMaximumNumberOfIterations(100);

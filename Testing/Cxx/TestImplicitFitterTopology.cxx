@@ -24,13 +24,6 @@ void TestSurface(
     {
       for (int size : { 24, 48, 70 })
       {
-        // Where random gaps are wider than the reach of one-sided rows, the band has holes: a known
-        // limit, of the sphere at 70^3.
-        if (choice == ipiatest::Choice::Random && size == 70 &&
-          constraint == vtkIPIAImplicitFitter::OutwardOffset)
-        {
-          continue;
-        }
         for (int iterations : { 15, 100 })
         {
           fitter->SetNormalConstraint(constraint);

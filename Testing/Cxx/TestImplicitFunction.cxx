@@ -65,17 +65,23 @@ std::vector<ipiatest::Vector3> Probes(vtkIPIAImplicitFitter* fitter, double enla
 double FarField(vtkIPIAImplicitFitter* fitter, ipiatest::Vector3 x)
 {
   vtkImageData* lattice = ipiatest::ControlLattice(fitter);
-  int cell[3] = { 0, 0, 0 };
   const int* n = lattice->GetDimensions();
-  for (int a = 0; a < 3; ++a)
+  vtkIdType box = 0;
+  for (int a = 2; a >= 0; --a)
   {
-    const double u =
-      (x[static_cast<std::size_t>(a)] - lattice->GetOrigin()[a]) / lattice->GetSpacing()[a];
-    cell[a] = n[a] == 1 ? 0 : std::min(std::max(static_cast<int>(std::floor(u)), 1), n[a] - 3);
+    if (n[a] > 1)
+    {
+      // Box i is centred i / 2 spacings above the lower end of the domain, where u is 1.
+      const double u =
+        (x[static_cast<std::size_t>(a)] - lattice->GetOrigin()[a]) / lattice->GetSpacing()[a];
+      const int boxes = 2 * (n[a] - 3) + 1;
+      const int i = static_cast<int>(std::floor(2 * (u - 1) + 0.5));
+      box = box * boxes + std::min(std::max(i, 0), boxes - 1);
+    }
   }
-  return lattice->GetCellData()
-    ->GetArray("FarField")
-    ->GetComponent(lattice->ComputeCellId(cell), 0);
+  vtkFieldData* field = lattice->GetFieldData();
+  return field->GetArray("FarField")->GetComponent(box, 0) *
+    field->GetArray("FarFieldMagnitude")->GetComponent(0, 0);
 }
 
 void CheckRefusedLattice(Checks& checks, vtkImageData* lattice, const std::string& phrase)
@@ -108,6 +114,24 @@ vtkSmartPointer<vtkImageData> Lattice(int nx, int ny, int nz, const char* name, 
   return lattice;
 }
 
+/// A lattice of 8^3 coefficients with a far field of one sign.
+vtkSmartPointer<vtkImageData> WithFarField(
+  vtkIdType values, int components, double sign, double magnitude)
+{
+  auto lattice = Lattice(8, 8, 8, "Coefficient");
+  vtkNew<vtkDoubleArray> signs;
+  signs->SetName("FarField");
+  signs->SetNumberOfComponents(components);
+  signs->SetNumberOfTuples(values);
+  signs->Fill(sign);
+  lattice->GetFieldData()->AddArray(signs);
+  vtkNew<vtkDoubleArray> size;
+  size->SetName("FarFieldMagnitude");
+  size->InsertNextValue(magnitude);
+  lattice->GetFieldData()->AddArray(size);
+  return lattice;
+}
+
 void TestBadLattices(Checks& checks)
 {
   vtkNew<vtkImageData> empty;
@@ -119,6 +143,20 @@ void TestBadLattices(Checks& checks)
   auto flat = Lattice(8, 8, 8, "Coefficient");
   flat->SetSpacing(1, 0, 1);
   CheckRefusedLattice(checks, flat, "spacing of the control lattice is not positive");
+
+  constexpr vtkIdType boxes = 11 * 11 * 11;
+  CheckRefusedLattice(checks, WithFarField(boxes - 1, 1, 1, 2), "1330 values of 1 component(s)");
+  CheckRefusedLattice(checks, WithFarField(boxes, 2, 1, 2), "1331 values of 2 component(s)");
+  CheckRefusedLattice(checks, WithFarField(boxes, 1, 3, 2), "values other than -1, 0 and 1");
+  CheckRefusedLattice(checks, WithFarField(boxes, 1, 1, 0), "with one positive value");
+  auto without = WithFarField(boxes, 1, 1, 2);
+  without->GetFieldData()->RemoveArray("FarFieldMagnitude");
+  CheckRefusedLattice(checks, without, "no field array FarFieldMagnitude");
+
+  vtkNew<vtkIPIAImplicitFunction> function;
+  function->SetControlLattice(WithFarField(boxes, 1, -1, 2));
+  double x[3] = { 3, 3, 3 };
+  checks.Equal(function->EvaluateFunction(x), -2.0, "a good far field is taken");
 }
 
 /// nullptr removes the lattice without a word.

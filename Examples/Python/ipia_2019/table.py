@@ -35,5 +35,5 @@ def _note_far_field_points(lab, model, made):
         lab.note(
             f"{model.name}: {made.points_in_far_field} of {len(lab.library.cloud(model.name))} "
             "points lie so far from the others that the filter counts their knot cells as without "
-            "data (less than 1/20 of the usual density of rows) and f is the far field's constant "
+            "data (less than 1/50 of the usual density of rows) and f is the far field's constant "
             f"there, which is the maximum error; elsewhere it is {made.max_error_elsewhere:.3g}")
