@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cloud in, a surface out, by PCL's Poisson reconstruction with its defaults.
+// A cloud in, a surface out, by PCL's Poisson reconstruction with its defaults, but for the depth
+// of the octree and, where it is given, the weight of the points (0: unscreened, for noisy points).
 //
-//   ReconstructPCL points.ply surface.ply depth
+//   ReconstructPCL points.ply surface.ply depth [weight]
 #include "Job.h"
 #include "StageClock.h"
 
@@ -25,6 +26,10 @@ void reconstruct(const std::vector<std::string>& arguments)
   clock.Finish("read");
   pcl::Poisson<pcl::PointNormal> poisson;
   poisson.setDepth(std::stoi(arguments[2]));
+  if (arguments.size() > 3)
+  {
+    poisson.setPointWeight(std::stof(arguments[3]));
+  }
   poisson.setInputCloud(cloud);
   pcl::PolygonMesh surface;
   poisson.reconstruct(surface);
@@ -40,5 +45,5 @@ void reconstruct(const std::vector<std::string>& arguments)
 
 int main(int argc, char* argv[])
 {
-  return benchmarks::RunJob(argc, argv, 3, "points.ply surface.ply depth", reconstruct);
+  return benchmarks::RunJob(argc, argv, 3, "points.ply surface.ply depth [weight]", reconstruct);
 }

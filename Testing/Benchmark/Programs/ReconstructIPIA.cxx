@@ -102,8 +102,19 @@ void reconstruct(const std::vector<std::string>& arguments)
     setCells(used, cloud, std::stoi(arguments[3]));
   }
   const FitterStages stages(used, clock);
+  std::string refusal;
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetClientData(&refusal);
+  observer->SetCallback([](vtkObject*, unsigned long, void* text, void* message)
+    { *static_cast<std::string*>(text) += static_cast<const char*>(message); });
+  used->AddObserver(vtkCommand::ErrorEvent, observer);
   last->Update();
   clock.Finish("contour");
+  if (!refusal.empty())
+  {
+    // After the name of the class and its address.
+    throw std::runtime_error(refusal.substr(refusal.find("): ") + 3));
+  }
 
   benchmarks::WriteSurface(last->GetOutput(), arguments[2]);
   clock.Finish("write");

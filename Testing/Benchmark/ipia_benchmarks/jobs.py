@@ -34,6 +34,7 @@ JOBS = (
     Job("Open3D Poisson, depth 7", "ReconstructOpen3D", (), ("7",)),
     Job("Open3D Poisson, depth 8", "ReconstructOpen3D", (), ("8",)),
     Job("PCL Poisson, depth 8", "ReconstructPCL", (), ("8",)),
+    Job("PCL Poisson, depth 8, unscreened", "ReconstructPCL", (), ("8", "0")),
     Job("CGAL Poisson", "ReconstructCGAL"),
     Job("CGAL Poisson, 128", "ReconstructCGAL", (), ("128",)),
 )
