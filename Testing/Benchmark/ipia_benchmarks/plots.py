@@ -4,22 +4,30 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402; after the choice of what it draws with
+from matplotlib import ticker  # noqa: E402
 
 from .tables import geometric_mean  # noqa: E402
 
-OURS_COLOUR, OTHERS = "#c1272d", plt.get_cmap("tab10").colors
+RED = 3  # of the colours of tab10
+OURS_COLOUR = plt.get_cmap("tab10").colors[RED]
 
 
 def _styles(names, ours):
     """Colour and marker by name; ours are red."""
-    marks = "osD^v<>PX*"
-    styles = {}
-    for k, name in enumerate(names):
-        if name in ours:
-            styles[name] = OURS_COLOUR, "o" if not styles else "s"
-        else:
-            styles[name] = OTHERS[[0, 9, 1, 2, 8, 4, 5, 6, 7][k % 9]], marks[k % len(marks)]
-    return styles
+    marks = "osD^v<>PX*d"
+    others = [colour for k, colour in enumerate(plt.get_cmap("tab10").colors) if k != RED]
+    return {name: (OURS_COLOUR if name in ours else others[k % len(others)], marks[k % len(marks)])
+            for k, name in enumerate(names)}
+
+
+def _tidy(ax):
+    """Plain numbers at 1, 2 and 5 times the powers of ten."""
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_locator(ticker.NullLocator())
+    ax.grid(True, alpha=0.3)
+    ax.tick_params(labelsize=7)
 
 
 def _save(figure, path):
@@ -41,8 +49,9 @@ def comparison(report, ours, folder):
                 colour, mark = styles[job.name]
                 ax.loglog(one.run.cpu, one.quality["chamfer"], mark, color=colour, label=job.name)
         ax.set_title(f"{cloud['name']} ({cloud['points']} points)", fontsize=9)
-        ax.grid(True, which="both", alpha=0.2)
-        ax.tick_params(labelsize=7)
+        _tidy(ax)
+    for ax in axes.T.flat[len(report.clouds):]:
+        ax.set_visible(False)
     for ax in axes[:, 0]:
         ax.set_ylabel("chamfer distance, % of diagonal", fontsize=8)
     for ax in axes[-1]:
@@ -81,7 +90,7 @@ def scaling(measurements, folder):
         for k, stage in enumerate(stages):
             column[0].loglog(
                 [one.size for one in runs],
-                [max(1e-3, one.cpu_of(stage)) for one in runs], "o-", color=OTHERS[k], label=stage)
+                [max(1e-3, one.cpu_of(stage)) for one in runs], "o-", color=plt.get_cmap("tab10").colors[k], label=stage)
         column[0].loglog([one.size for one in runs], [one.one.wall for one in runs], "s--",
                          color="black", label="wall, 1 thread")
         column[0].loglog([one.size for one in runs], [one.two.wall for one in runs], "D:",
@@ -93,7 +102,7 @@ def scaling(measurements, folder):
         column[1].set_ylabel("peak memory, MB", fontsize=8)
         for ax in column:
             ax.set_xlabel(label, fontsize=8)
-            ax.grid(True, which="both", alpha=0.2)
-            ax.tick_params(labelsize=7)
+            _tidy(ax)
+            ax.set_xticks([one.size for one in runs])
     figure.tight_layout()
     _save(figure, folder / "scaling.png")

@@ -75,15 +75,16 @@ def table_of(label, measurements):
     rows = []
     for one in measurements:
         if one.failure:
-            rows.append([one.size, one.failure] + [""] * (len(stages) + 5))
             continue
         facts = one.one.facts
         rows.append([one.size, " x ".join(map(str, facts["grid"])), facts["triangles"]] +
                     [figure(one.cpu_of(stage), 2) for stage in stages] +
                     [figure(one.one.wall), figure(one.two.wall),
                      figure(one.one.wall / one.two.wall, 2), figure(one.one.peak_mb)])
-    return table([label, "coefficients", "triangles", *[f"{stage}, s" for stage in stages],
-                  "wall, 1 thread, s", "wall, 2 threads, s", "speed-up", "peak memory, MB"], rows)
+    failures = "".join(f"\n{one.size}: {one.failure}\n" for one in measurements if one.failure)
+    return table([label.split(",")[0], "coefficients", "triangles", *[f"{stage}, s" for stage in stages],
+                  "wall, 1 thread, s", "wall, 2 threads, s", "speed-up", "peak memory, MB"],
+                 rows) + failures
 
 
 def table_of_core(found):
@@ -102,7 +103,7 @@ def report(measurements, found):
     rates = found["machine"]
     lines = ["# Scaling\n", f"{measuring.machine()}.\n"]
     for label, runs in measurements.items():
-        lines += [f"## {label}\n", table_of(label, runs)]
+        lines += [f"## Against {label}\n", table_of(label, runs)]
     return "\n".join(lines + [
         "## The core's sweep over the rows, one level\n", table_of_core(found),
         f"Limits of one thread: {figure(rates['1e9 multiply-adds/s, double'])}e9 multiply-adds of "
@@ -125,7 +126,7 @@ def main():
     found = core(given.programs, given.output)
     measurements = {
         "points": measure(given.programs, given.output, None, given.points, cells=False),
-        f"cells along the longest side ({POINTS_OF_CELLS} points)":
+        f"cells, {POINTS_OF_CELLS} points":
             measure(given.programs, given.output, POINTS_OF_CELLS, given.cells, cells=True)}
     text = report(measurements, found)
     (given.output / "scaling.md").write_text(text)
