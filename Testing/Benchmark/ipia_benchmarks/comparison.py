@@ -187,6 +187,8 @@ def main():
 
     clouds = make_clouds(given.programs, given.output / "clouds", given.meshes)
     clouds = [cloud for cloud in clouds if not given.clouds or cloud["name"] in given.clouds]
+    if not clouds:
+        parser.error("no cloud has such a name")
     surfaces = given.output / "surfaces"
     runs = measure(clouds, jobs.JOBS, given.programs, surfaces, given.repetitions, given.limit)
     results = evaluate(clouds, jobs.JOBS, given.programs, surfaces, runs)

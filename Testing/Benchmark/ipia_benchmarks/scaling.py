@@ -39,7 +39,9 @@ def cloud(programs, folder, count):
     """A cloud of so many points; made once."""
     path = folder / f"bumps-{count}.ply"
     if not path.exists():
-        subprocess.run([programs / "MakeClouds", "bumps", str(count), path], check=True)
+        unfinished = path.with_suffix(".unfinished")
+        subprocess.run([programs / "MakeClouds", "bumps", str(count), unfinished], check=True)
+        unfinished.rename(path)
     return path
 
 
