@@ -40,7 +40,8 @@ ImplicitShape gyroidInBall()
   };
   const auto parts = [](const Vector3& p) -> Parts
   {
-    const double radius = vtkMath::Norm(p.data());
+    // Not 0 in the middle, where the direction outwards has no meaning and no weight.
+    const double radius = std::max(vtkMath::Norm(p.data()), 1e-12);
     Vector3 sine{}, cosine{};
     for (std::size_t a = 0; a < 3; ++a)
     {
