@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# What the two commands for newcomers, Examples/demo.sh and Testing/run.sh, have in common.
+# What the commands that install what is missing have in common: Examples/demo.sh, Testing/run.sh and
+# those of Testing/Benchmark.
 
 as_root()
 {
@@ -129,3 +130,15 @@ download_and_unpack()
     dpkg-deb -x "$1"_*.deb . &&
     rm "$1"_*.deb
 )
+
+# unpack_scans FOLDER: meshes/ and points_3/ of the Debian package libcgal-demo, unless they are there.
+unpack_scans()
+{
+  local folder=$1 archive=$1/package/usr/share/doc/libcgal-dev/data.tar.gz
+  if [ -d "$folder/meshes" ] && [ -d "$folder/points_3" ]; then
+    return 0
+  fi
+  mkdir -p "$folder"
+  [ -f "$archive" ] || unpack_package libcgal-demo "$folder/package" "$folder/package.log"
+  tar -xzf "$archive" -C "$folder" --strip-components 1
+}

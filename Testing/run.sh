@@ -15,15 +15,11 @@ sanitized=$source_dir/build/sanitize
 data=$source_dir/build/data
 source "$source_dir/Examples/install.sh"
 
-mkdir -p "$main" "$sanitized" "$data"
+mkdir -p "$main" "$sanitized"
 begin=$SECONDS
 install_packages "$main/install.log" cmake g++ ninja-build libvtk9-dev python3-vtk9 python3-numpy \
   libeigen3-dev libgtest-dev xvfb xauth
-if ! [ -d "$data/meshes" ] || ! [ -d "$data/points_3" ]; then
-  [ -f "$data/package/usr/share/doc/libcgal-dev/data.tar.gz" ] ||
-    unpack_package libcgal-demo "$data/package" "$data/package.log"
-  tar -xzf "$data/package/usr/share/doc/libcgal-dev/data.tar.gz" -C "$data" --strip-components 1
-fi
+unpack_scans "$data"
 
 # Tests run side by side: their threads must not spin while they wait for each other.
 export OMP_WAIT_POLICY=passive

@@ -6,6 +6,7 @@
  * Counters are medians. Times that are compared are taken in turn, so that both meet the same
  * disturbances. Bounds that the project keeps stand in the labels.
  */
+#include "BrickOperator.h"
 #include "CollocationOperator.h"
 #include "Dispatch.h"
 #include "ImplicitSpline.h"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -31,6 +33,11 @@ constexpr std::int64_t ImageSize = 256;
 /// rule.
 constexpr double MultiplyAddsPerRow = (64 + 16 + 4) + (4 + 16 + 64) + 3 * 4 * 3;
 
+/// The same of a row with its gradient. Per direction the coefficients meet two functions of z,
+/// what is left three pairs of functions of z and y, then four of all axes; a slope takes two more
+/// steps of Horner's rule.
+constexpr double MultiplyAddsPerHermiteRow = 2 * (2 * 64 + 3 * 16 + 4 * 4) + 3 * 4 * (3 + 2);
+
 template <typename Action>
 double seconds(const Action& action)
 {
@@ -46,20 +53,24 @@ double median(std::vector<double> values)
   return *middle;
 }
 
+using FloatVector16 = float __attribute__((vector_size(64)));
+
 /// Independent multiply-adds without memory, enough of them in flight to fill the pipelines.
+template <typename Scalar, typename Vectors>
 struct MultiplyAddKernel
 {
   static constexpr int Chains = 12;
   static constexpr int Steps = 20000;
+  static constexpr double Count = sizeof(Vectors) / sizeof(Scalar) * Chains * Steps;
 
-  static IPIA_INLINE void run(double factor, double& result)
+  static IPIA_INLINE void run(Scalar factor, Scalar& result)
   {
-    Vector8 chain[Chains];
+    Vectors chain[Chains];
     for (int i = 0; i < Chains; ++i)
     {
-      chain[i] = Vector8{} + i;
+      chain[i] = Vectors{} + static_cast<Scalar>(i);
     }
-    const Vector8 a = Vector8{} + factor, b = Vector8{} + 1e-9;
+    const Vectors a = Vectors{} + factor, b = Vectors{} + static_cast<Scalar>(1e-9);
     for (int step = 0; step < Steps; ++step)
     {
       for (int i = 0; i < Chains; ++i)
@@ -67,7 +78,7 @@ struct MultiplyAddKernel
         chain[i] = chain[i] * a + b;
       }
     }
-    Vector8 sum = chain[0];
+    Vectors sum = chain[0];
     for (int i = 1; i < Chains; ++i)
     {
       sum += chain[i];
@@ -76,23 +87,59 @@ struct MultiplyAddKernel
   }
 };
 
-/// Multiply-adds of doubles per second that one thread does with the instruction set in use.
+/// Multiply-adds per second that one thread does with the instruction set in use.
+template <typename Scalar, typename Vectors>
 double multiplyAddRate()
 {
   static const double rate = []
   {
+    using Kernel = MultiplyAddKernel<Scalar, Vectors>;
     std::vector<double> times;
     for (int k = 0; k < 51; ++k)
     {
-      double result = 0;
+      Scalar factor = static_cast<Scalar>(0.999), result = 0;
       times.push_back(seconds(
         [&]
         {
-          dispatch<MultiplyAddKernel>(0.999, result);
+          dispatch<Kernel>(factor, result);
           benchmark::DoNotOptimize(result);
         }));
     }
-    return 8.0 * MultiplyAddKernel::Chains * MultiplyAddKernel::Steps / median(times);
+    return Kernel::Count / median(times);
+  }();
+  return rate;
+}
+
+double doubleMultiplyAddRate()
+{
+  return multiplyAddRate<double, Vector8>();
+}
+
+double floatMultiplyAddRate()
+{
+  return multiplyAddRate<float, FloatVector16>();
+}
+
+/// Bytes per second of a = b + s c on arrays that no cache holds, one thread; three are moved.
+double memoryRate()
+{
+  static const double rate = []
+  {
+    constexpr std::size_t n = std::size_t(1) << 24;
+    std::vector<double> a(n, 0), b(n, 1), c(n, 2), times;
+    for (int k = 0; k < 11; ++k)
+    {
+      times.push_back(seconds(
+        [&]
+        {
+          for (std::size_t i = 0; i < n; ++i)
+          {
+            a[i] = b[i] + 0.5 * c[i];
+          }
+          benchmark::ClobberMemory();
+        }));
+    }
+    return 3 * sizeof(double) * static_cast<double>(n) / median(times);
   }();
   return rate;
 }
@@ -117,33 +164,107 @@ Vector randomCoefficients(const Lattice<3>& lattice)
   return c;
 }
 
-/// The given number of rows in each knot cell of a band around a sphere, in random order.
-ConstraintRows<3> sphereBand(int rowsPerCell)
+/// Calls action(corner of the cell, position) for the given number of random positions in each knot
+/// cell of a band around a sphere.
+template <typename Action>
+void forSphereBand(int rowsPerCell, const Action& action)
 {
   const Lattice<3> lattice = cubeLattice();
   const double middle = lattice.extent(0) / 2, radius = 0.4 * lattice.extent(0);
   std::mt19937_64 engine(2);
   std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<Point<3>> points;
   for (std::int64_t c = 0; c < lattice.numberOfCells(); ++c)
   {
     const std::int64_t n = lattice.cells(0);
+    const Index<3> cell{ c % n, c / n % n, c / n / n };
     const Point<3> lower(
-      static_cast<double>(c % n), static_cast<double>(c / n % n), static_cast<double>(c / n / n));
+      static_cast<double>(cell[0]), static_cast<double>(cell[1]), static_cast<double>(cell[2]));
     const double distance = (lower.array() + 0.5 - middle).matrix().norm() - radius;
     for (int k = 0; k < rowsPerCell && std::abs(distance) < 1.5; ++k)
     {
-      points.emplace_back(
-        lower.x() + uniform(engine), lower.y() + uniform(engine), lower.z() + uniform(engine));
+      action(cell,
+        Point<3>(
+          lower.x() + uniform(engine), lower.y() + uniform(engine), lower.z() + uniform(engine)));
     }
   }
+}
+
+/// Rows with values alone, in random order.
+ConstraintRows<3> sphereBand(int rowsPerCell)
+{
+  std::vector<Point<3>> points;
+  forSphereBand(rowsPerCell, [&](const Index<3>&, const Point<3>& x) { points.push_back(x); });
+  std::mt19937_64 engine(3);
   std::shuffle(points.begin(), points.end(), engine);
   Points<3> positions(3, points.size());
   for (std::size_t k = 0; k < points.size(); ++k)
   {
     positions.col(static_cast<Eigen::Index>(k)) = points[k];
   }
-  return { lattice, positions, Vector::Ones(positions.cols()), Vector() };
+  return { cubeLattice(), positions, Vector::Ones(positions.cols()), Vector() };
+}
+
+/// Rows with values and gradients on the band of one level, sorted as they have to be.
+class HermiteBand
+{
+public:
+  BrickLattice<3> Bricks{ cubeLattice() };
+  HermiteRows<3> Rows;
+
+  explicit HermiteBand(int rowsPerCell)
+  {
+    std::map<Index<3>, std::vector<HermiteRow<3>>> byBrick;
+    forSphereBand(rowsPerCell,
+      [&](const Index<3>& cell, const Point<3>& x)
+      {
+        HermiteRow<3> row{};
+        Index<3> brick;
+        for (int a = 0; a < 3; ++a)
+        {
+          brick[a] = cell[a] / BrickWidth;
+          row.Cell |= static_cast<std::int32_t>(cell[a] % BrickWidth) << (2 * a);
+          row.T[a] = static_cast<float>(x[a] - static_cast<double>(cell[a]));
+          row.Slope[a] = 0.5F;
+        }
+        row.Weight = row.GradientWeight = 1;
+        byBrick[brick].push_back(row);
+        this->Bricks.activateAround(cell);
+      });
+    this->Bricks.storeAroundActive();
+    this->Bricks.allocate();
+    for (std::size_t colour = 0; colour < HermiteRows<3>::NumberOfColours; ++colour)
+    {
+      this->Rows.ColourBegin[colour] = this->Rows.Bricks.size();
+      for (auto& [brick, rows] : byBrick)
+      {
+        const auto parity = (brick[0] & 1) | (brick[1] & 1) << 1 | (brick[2] & 1) << 2;
+        if (static_cast<std::size_t>(parity) == colour)
+        {
+          std::stable_sort(
+            rows.begin(), rows.end(), [](const auto& p, const auto& q) { return p.Cell < q.Cell; });
+          const auto begin = static_cast<std::int64_t>(this->Rows.Rows.size());
+          this->Rows.Rows.insert(this->Rows.Rows.end(), rows.begin(), rows.end());
+          this->Rows.Bricks.push_back({ this->Bricks.brickAt(brick), begin,
+            static_cast<std::int64_t>(this->Rows.Rows.size()) });
+        }
+      }
+    }
+    this->Rows.ColourBegin.back() = this->Rows.Bricks.size();
+  }
+};
+
+/// What the sweeps report: medians of times on one thread and on two.
+void countSweep(benchmark::State& state, const std::vector<double>& onOne,
+  const std::vector<double>& onTwo, double rows, double multiplyAdds, double multiplyAddRate,
+  double bytes)
+{
+  const double perRow = median(onOne) / rows;
+  state.counters["rows"] = rows;
+  state.counters["ns/row"] = 1e9 * perRow;
+  state.counters["ns/row on 2"] = 1e9 * median(onTwo) / rows;
+  state.counters["speed-up on 2"] = median(onOne) / median(onTwo);
+  state.counters["share of multiply-add rate"] = multiplyAdds / perRow / multiplyAddRate;
+  state.counters["share of memory rate"] = bytes / perRow / memoryRate();
 }
 
 /// CollocationOperator::residual, once with one thread and once with two in turn.
@@ -161,17 +282,44 @@ void sweep(benchmark::State& state)
     onTwo.push_back(seconds([&] { two.residual(c, gradient); }));
     state.SetIterationTime(onOne.back());
   }
-  const double perRow = median(onOne) / static_cast<double>(rows.size());
-  state.counters["rows"] = static_cast<double>(rows.size());
-  state.counters["ns/row"] = 1e9 * perRow;
-  state.counters["ns/row on 2"] = 1e9 * median(onTwo) / static_cast<double>(rows.size());
-  state.counters["speed-up on 2"] = median(onOne) / median(onTwo);
-  state.counters["share of multiply-add rate"] = MultiplyAddsPerRow / perRow / multiplyAddRate();
-  state.counters["GB/s of rows"] = 1e-9 * sizeof(ConstraintRow<3>) / perRow;
+  countSweep(state, onOne, onTwo, static_cast<double>(rows.size()), MultiplyAddsPerRow,
+    doubleMultiplyAddRate(), sizeof(ConstraintRow<3>));
   state.SetLabel(
     state.range(0) >= 50 ? "bounds: 25 ns/row, speed-up 1.7" : "bounds: 40 ns/row, speed-up 1.7");
 }
 BENCHMARK(sweep)->Arg(5)->Arg(50)->UseManualTime()->Unit(benchmark::kMillisecond)->MinTime(2);
+
+/// BrickOperator::product, a row's value and gradient together, without fairing; once with one
+/// thread and once with two in turn.
+void hermiteSweep(benchmark::State& state)
+{
+  const HermiteBand band(static_cast<int>(state.range(0)));
+  const BrickOperator<3> one(band.Bricks, band.Rows, {}, 1), two(band.Bricks, band.Rows, {}, 2);
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::vector<float> p(static_cast<std::size_t>(band.Bricks.numberOfActiveBricks()) * BrickSize<3>);
+  for (float& value : p)
+  {
+    value = uniform(engine);
+  }
+  std::vector<float> product;
+  std::vector<double> onOne, onTwo;
+  for (auto unused : state)
+  {
+    onOne.push_back(seconds([&] { one.product(p, product); }));
+    onTwo.push_back(seconds([&] { two.product(p, product); }));
+    state.SetIterationTime(onOne.back());
+  }
+  countSweep(state, onOne, onTwo, static_cast<double>(band.Rows.Rows.size()),
+    MultiplyAddsPerHermiteRow, floatMultiplyAddRate(), sizeof(HermiteRow<3>));
+  state.SetLabel("bound at 5 rows a cell: 15 ns/row");
+}
+BENCHMARK(hermiteSweep)
+  ->Arg(5)
+  ->Arg(50)
+  ->UseManualTime()
+  ->Unit(benchmark::kMillisecond)
+  ->MinTime(2);
 
 /// A float image of f on one thread against filling the same memory, in turn.
 void sample(benchmark::State& state)
@@ -207,38 +355,15 @@ void sample(benchmark::State& state)
 }
 BENCHMARK(sample)->UseManualTime()->Unit(benchmark::kMillisecond)->MinTime(2);
 
-void machineMultiplyAdds(benchmark::State& state)
+/// The rates of the machine that the shares above refer to.
+void machine(benchmark::State& state)
 {
-  double result = 0;
   for (auto unused : state)
   {
-    dispatch<MultiplyAddKernel>(0.999, result);
-    benchmark::DoNotOptimize(result);
+    state.counters["1e9 multiply-adds/s, double"] = 1e-9 * doubleMultiplyAddRate();
+    state.counters["1e9 multiply-adds/s, float"] = 1e-9 * floatMultiplyAddRate();
+    state.counters["memory, GB/s"] = 1e-9 * memoryRate();
   }
-  state.counters["1e9 multiply-adds/s"] = 1e-9 * multiplyAddRate();
 }
-BENCHMARK(machineMultiplyAdds)->Unit(benchmark::kMicrosecond);
-
-/// a = b + s c on arrays that no cache holds, one thread; three arrays are moved.
-void machineMemory(benchmark::State& state)
-{
-  constexpr std::size_t n = std::size_t(1) << 24;
-  std::vector<double> a(n, 0), b(n, 1), c(n, 2);
-  std::vector<double> times;
-  for (auto unused : state)
-  {
-    times.push_back(seconds(
-      [&]
-      {
-        for (std::size_t i = 0; i < n; ++i)
-        {
-          a[i] = b[i] + 0.5 * c[i];
-        }
-        benchmark::ClobberMemory();
-      }));
-    state.SetIterationTime(times.back());
-  }
-  state.counters["GB/s"] = 1e-9 * 3 * sizeof(double) * static_cast<double>(n) / median(times);
-}
-BENCHMARK(machineMemory)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(machine)->Iterations(1);
 }

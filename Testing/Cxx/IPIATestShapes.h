@@ -166,10 +166,9 @@ inline ImplicitShape DoubleTorus(double thickness)
     { -0.3, -0.9, -1.2 * thickness }, { 2.3, 0.9, 1.2 * thickness } };
 }
 
-/// A fine triangulation of a shape: the contour of its samples.
-inline vtkSmartPointer<vtkPolyData> Triangulate(const ImplicitShape& shape)
+/// A fine triangulation of a shape: the contour of n samples per axis.
+inline vtkSmartPointer<vtkPolyData> Triangulate(const ImplicitShape& shape, int n = 121)
 {
-  constexpr int n = 121;
   vtkNew<vtkImageData> image;
   image->SetDimensions(n, n, n);
   image->SetOrigin(shape.Lower.data());

@@ -21,7 +21,7 @@
 
 namespace ipiatest
 {
-/// Of a triangulated surface. Genus (the handles of all components) holds for closed surfaces.
+/// Of a triangulated surface. Genus (the handles of all components) holds for manifolds.
 struct Topology
 {
   int Components;
@@ -52,7 +52,8 @@ inline int CountComponents(vtkPolyData* data)
   return components->GetNumberOfExtractedRegions();
 }
 
-inline vtkIdType CountEdges(vtkPolyData* surface, bool boundary)
+/// The edges of one triangle alone, or those of more than two.
+inline vtkSmartPointer<vtkPolyData> Edges(vtkPolyData* surface, bool boundary)
 {
   vtkNew<vtkFeatureEdges> edges;
   edges->SetInputData(surface);
@@ -61,17 +62,25 @@ inline vtkIdType CountEdges(vtkPolyData* surface, bool boundary)
   edges->SetBoundaryEdges(boundary);
   edges->SetNonManifoldEdges(!boundary);
   edges->Update();
-  return edges->GetOutput()->GetNumberOfCells();
+  return edges->GetOutput();
+}
+
+inline vtkIdType CountEdges(vtkPolyData* surface, bool boundary)
+{
+  return Edges(surface, boundary)->GetNumberOfCells();
 }
 
 inline Topology TopologyOf(vtkPolyData* surface)
 {
   const int components = CountComponents(surface);
+  const auto boundary = Edges(surface, true);
+  const vtkIdType loops = boundary->GetNumberOfCells() > 0 ? CountComponents(boundary) : 0;
   const vtkIdType faces = surface->GetNumberOfPolys();
-  // A closed surface of triangles has 3/2 edges for each.
-  const vtkIdType euler = surface->GetNumberOfPoints() - faces * 3 / 2 + faces;
-  return { components, static_cast<int>(components - euler / 2), CountEdges(surface, true),
-    CountEdges(surface, false) };
+  // Every triangle has three edges, of which those inside belong to two.
+  const vtkIdType edges = (3 * faces + boundary->GetNumberOfCells()) / 2;
+  const vtkIdType euler = surface->GetNumberOfPoints() - edges + faces;
+  return { components, static_cast<int>(components - (euler + loops) / 2),
+    boundary->GetNumberOfCells(), CountEdges(surface, false) };
 }
 
 /// The zero surface of the function in port 0 of an algorithm, which is brought up to date.
