@@ -3,6 +3,7 @@
 
 #include "CubicBasis.h"
 #include "Dispatch.h"
+#include "OutsideDomain.h"
 #include "Parallel.h"
 
 #include <atomic>
@@ -476,7 +477,6 @@ struct ImplicitSpline<Dim>::Nearest
   std::array<AxisLocation, Dim> At;
   std::int64_t Box;
   Point<Dim> Away; ///< from the nearest point of the domain to the position
-  double Distance;
 
   Nearest(const Lattice<Dim>& lattice, const Point<Dim>& position)
   {
@@ -491,7 +491,6 @@ struct ImplicitSpline<Dim>::Nearest
       box[a] = lattice.locateBox(inside, a);
     }
     this->Box = lattice.boxIndex(box);
-    this->Distance = this->Away.norm();
   }
 };
 
@@ -562,7 +561,7 @@ double ImplicitSpline<Dim>::value(const Point<Dim>& position) const
   const Nearest nearest(this->ControlLattice, position);
   const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Box) != 0;
   const double f = far ? this->Far.value(nearest.Box) : this->splineSum(nearest.At, nullptr);
-  return f < 0 ? f - nearest.Distance : f + nearest.Distance;
+  return continueOutside<Dim>(nearest.Away, f, nullptr);
 }
 
 template <int Dim>
@@ -580,15 +579,7 @@ double ImplicitSpline<Dim>::valueAndGradient(const Point<Dim>& position, Point<D
   const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Box) != 0;
   gradient.setZero();
   const double f = far ? this->Far.value(nearest.Box) : this->splineSum(nearest.At, &gradient);
-  if (nearest.Distance > 0)
-  {
-    for (int a = 0; a < Dim; ++a)
-    {
-      gradient[a] = nearest.Away[a] == 0 ? gradient[a] : 0.0;
-    }
-    gradient += (f < 0 ? -1.0 : 1.0) / nearest.Distance * nearest.Away;
-  }
-  return f < 0 ? f - nearest.Distance : f + nearest.Distance;
+  return continueOutside<Dim>(nearest.Away, f, &gradient);
 }
 
 template <int Dim>

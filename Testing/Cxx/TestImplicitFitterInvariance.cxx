@@ -31,17 +31,6 @@ vtkSmartPointer<vtkIPIAImplicitFitter> Fit(
 {
   auto fitter = NewFitter(method, ipiatest::ToPolyData(Moved(cloud, scale, shift)), 24);
   fitter->SetSolver(solver);
-  if (method == Method::Default)
-  {
-    // Without symmetry no point lies on the border of knot cells, where rounding decides which of
-    // them, and which cluster of points, it belongs to.
-    double bounds[6] = { -1.61, 1.53, -1.57, 1.66, -0.53, 0.47 };
-    for (double& b : bounds)
-    {
-      b = scale * b + shift;
-    }
-    fitter->SetModelBounds(bounds);
-  }
   fitter->SetOutputScalarTypeToDouble();
   fitter->Update();
   return fitter;
