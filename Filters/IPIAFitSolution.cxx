@@ -2,6 +2,7 @@
 #include "IPIAFitSolution.h"
 
 #include "Core/HierarchicalFit.h"
+#include "Core/Parallel.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFitter.h"
 
@@ -23,10 +24,14 @@ Points<Dim> toLocal(
   const Placement<Dim>& place, const std::vector<std::array<double, 3>>& positions)
 {
   Points<Dim> local(Dim, static_cast<Eigen::Index>(positions.size()));
-  for (std::size_t k = 0; k < positions.size(); ++k)
-  {
-    local.col(static_cast<Eigen::Index>(k)) = place.toLocal(positions[k].data());
-  }
+  parallelChunks(local.cols(), resolveThreads(0),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        local.col(k) = place.toLocal(positions[static_cast<std::size_t>(k)].data());
+      }
+    });
   return local;
 }
 

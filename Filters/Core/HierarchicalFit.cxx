@@ -109,7 +109,7 @@ double validatedSmoothing(const std::vector<Level<Dim>>& levels,
     training[l] = { levels[l].Coarsening, levels[l].Grid, levels[l].Dense, {}, {} };
     training[l].Data = l + 1 == levels.size()
       ? std::move(kept)
-      : coarserData(training[l + 1].Data, levels[l].Coarsening);
+      : coarserData(training[l + 1].Data, levels[l].Coarsening, threads);
   }
   std::vector<BrickLattice<Dim>> scratch(
     bricks.begin(), bricks.begin() + static_cast<std::ptrdiff_t>(last) + 1);
@@ -170,9 +170,9 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
 {
   const int threads = resolveThreads(options.Threads);
   HierarchicalResult<Dim> result;
-  Samples<Dim> samples = sortedSamples(lattice, input);
+  Samples<Dim> samples = sortedSamples(lattice, input, threads);
   input = {};
-  const std::vector<Level<Dim>> levels = makeLevels(lattice, std::move(samples), options);
+  const std::vector<Level<Dim>> levels = makeLevels(lattice, std::move(samples), options, threads);
   std::vector<BrickLattice<Dim>> bricks = makeBricks(levels);
 
   const auto solveAndReport = [&](std::size_t l)

@@ -25,46 +25,54 @@ constexpr double LeastScale = 0.1;
 constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
 
 template <int Dim>
-HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, double gradient)
+HermiteRows<Dim> makeRows(
+  const Level<Dim>& level, const BrickLattice<Dim>& bricks, double gradient, int threads)
 {
   HermiteRows<Dim> rows;
-  rows.Rows.reserve(level.Data.size());
+  rows.Rows.resize(level.Data.size());
+  std::vector<std::int32_t> brickOf(rows.Rows.size());
+  parallelChunks(static_cast<std::int64_t>(rows.Rows.size()), threads,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+      {
+        const Sample<Dim>& sample = level.Data[k];
+        const Index<Dim> cell = level.cellOf(sample);
+        Index<Dim> brick;
+        HermiteRow<Dim>& row = rows.Rows[k];
+        row.Cell = 0;
+        for (int a = 0; a < Dim; ++a)
+        {
+          brick[a] = cell[a] / BrickWidth;
+          row.Cell |= static_cast<std::int32_t>(cell[a] % BrickWidth) << (2 * a);
+          row.T[a] =
+            static_cast<float>(level.cells(sample.Position[a]) - static_cast<double>(cell[a]));
+          row.Slope[a] = static_cast<float>(level.Grid.Spacing[a] * sample.Normal[a]);
+        }
+        row.Value = sample.Value;
+        row.Weight = sample.Weight;
+        row.GradientWeight =
+          sample.HasNormal ? static_cast<float>(sample.Weight * gradient * gradient) : 0.F;
+        row.Source = static_cast<std::int32_t>(k);
+        brickOf[k] = bricks.brickAt(brick);
+      }
+    });
   std::array<std::vector<typename HermiteRows<Dim>::Brick>, HermiteRows<Dim>::NumberOfColours>
     coloured;
-  Index<Dim> current;
-  current.fill(-1);
-  std::size_t colour = 0;
-  for (const Sample<Dim>& sample : level.Data)
+  for (std::size_t k = 0; k < brickOf.size();)
   {
-    const Index<Dim> cell = level.cellOf(sample);
-    Index<Dim> brick;
-    HermiteRow<Dim> row;
-    row.Cell = 0;
+    std::size_t end = k, colour = 0;
+    while (end < brickOf.size() && brickOf[end] == brickOf[k])
+    {
+      ++end;
+    }
     for (int a = 0; a < Dim; ++a)
     {
-      brick[a] = cell[a] / BrickWidth;
-      row.Cell |= static_cast<std::int32_t>(cell[a] % BrickWidth) << (2 * a);
-      row.T[a] = static_cast<float>(level.cells(sample.Position[a]) - static_cast<double>(cell[a]));
-      row.Slope[a] = static_cast<float>(level.Grid.Spacing[a] * sample.Normal[a]);
+      colour |= static_cast<std::size_t>(bricks.position(brickOf[k])[a] & 1) << a;
     }
-    row.Value = sample.Value;
-    row.Weight = sample.Weight;
-    row.GradientWeight =
-      sample.HasNormal ? static_cast<float>(sample.Weight * gradient * gradient) : 0.F;
-    row.Source = static_cast<std::int32_t>(rows.Rows.size());
-    if (brick != current)
-    {
-      current = brick;
-      colour = 0;
-      for (int a = 0; a < Dim; ++a)
-      {
-        colour |= static_cast<std::size_t>(brick[a] & 1) << a;
-      }
-      const auto at = static_cast<std::int64_t>(rows.Rows.size());
-      coloured[colour].push_back({ bricks.brickAt(brick), at, at });
-    }
-    ++coloured[colour].back().End;
-    rows.Rows.push_back(row);
+    coloured[colour].push_back(
+      { brickOf[k], static_cast<std::int64_t>(k), static_cast<std::int64_t>(end) });
+    k = end;
   }
   for (std::size_t k = 0; k < coloured.size(); ++k)
   {
@@ -92,16 +100,25 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
   std::vector<float> sums, density, prediction;
   collocation.density(sums);
   collocation.evaluate(sums, density);
-  double logarithms = 0, total = 0;
-  for (const HermiteRow<Dim>& row : rows.Rows)
+  const auto n = static_cast<std::int64_t>(rows.Rows.size());
+  const auto sumOver = [&](const auto& term)
   {
-    const double relative = density[static_cast<std::size_t>(row.Source)] / UnitDensity;
-    if (row.Weight > 0 && relative > 0)
-    {
-      logarithms += row.Weight * std::log(relative);
-      total += row.Weight;
-    }
-  }
+    return parallelSum(n, threads,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        double sum = 0;
+        for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+        {
+          const HermiteRow<Dim>& row = rows.Rows[k];
+          const double relative = density[static_cast<std::size_t>(row.Source)] / UnitDensity;
+          sum += row.Weight > 0 && relative > 0 ? term(row, relative) : 0.0;
+        }
+        return sum;
+      });
+  };
+  const double total = sumOver([](const HermiteRow<Dim>& row, double) { return row.Weight; });
+  const double logarithms = sumOver(
+    [](const HermiteRow<Dim>& row, double relative) { return row.Weight * std::log(relative); });
   const double typical = total > 0 ? std::exp(logarithms / total) : 1.0;
 
   double scale = 0;
@@ -117,7 +134,7 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
     scale = options.RobustFactor *
       std::max(1.4826 * median(std::move(misses)), LeastScale * bricks.lattice().Spacing.mean());
   }
-  for (HermiteRow<Dim>& row : rows.Rows)
+  const auto weigh = [&](HermiteRow<Dim>& row)
   {
     double factor = 1 / typical;
     if (scale > 0)
@@ -129,7 +146,10 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
     factor /= level.Data[static_cast<std::size_t>(row.Source)].Fairing;
     row.Weight *= static_cast<float>(factor);
     row.GradientWeight *= static_cast<float>(factor);
-  }
+  };
+  parallelChunks(n, threads,
+    [&](std::int64_t begin, std::int64_t end)
+    { std::for_each(rows.Rows.begin() + begin, rows.Rows.begin() + end, weigh); });
 }
 
 /// Conjugate gradients with the diagonal as preconditioner, on the active coefficients.
@@ -240,14 +260,14 @@ double occupiedCells(const Level<Dim>& level)
 }
 
 template <int Dim>
-Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening)
+Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening, int threads)
 {
-  return cluster(finer, coarsening + SubCellBits - ClusterBits);
+  return cluster(finer, coarsening + SubCellBits - ClusterBits, threads);
 }
 
 template <int Dim>
 std::vector<Level<Dim>> makeLevels(
-  const Lattice<Dim>& lattice, Samples<Dim> points, const HierarchicalOptions& options)
+  const Lattice<Dim>& lattice, Samples<Dim> points, const HierarchicalOptions& options, int threads)
 {
   std::vector<Level<Dim>> levels;
   for (int coarsening = 0;; ++coarsening)
@@ -266,7 +286,7 @@ std::vector<Level<Dim>> makeLevels(
     level.Dense = longest <= options.DenseCells;
     if (coarsening == 0)
     {
-      level.Data = cluster(points, 0);
+      level.Data = cluster(points, 0, threads);
       if (level.Data.size() < points.size())
       {
         level.Unclustered = std::move(points);
@@ -274,7 +294,7 @@ std::vector<Level<Dim>> makeLevels(
     }
     else
     {
-      level.Data = coarserData(levels.back().Data, coarsening);
+      level.Data = coarserData(levels.back().Data, coarsening, threads);
     }
     levels.push_back(std::move(level));
     const bool coarsest = options.NumberOfLevels > 0 ? coarsening + 1 == options.NumberOfLevels
@@ -348,8 +368,8 @@ LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
   const double gradient = level.Dense ? options.DenseGradient
     : finest                          ? options.FinestGradient
                                       : options.BandGradient;
-  HermiteRows<Dim> rows =
-    makeRows(level, bricks[l], std::max(gradient, std::min(relative, MostSmoothingGradient)));
+  HermiteRows<Dim> rows = makeRows(
+    level, bricks[l], std::max(gradient, std::min(relative, MostSmoothingGradient)), threads);
   weighRows(level, bricks[l], rows, l > 0, options, threads);
   FairingWeights fairing;
   fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : options.BandMembrane);
@@ -392,7 +412,7 @@ std::vector<float> evaluateLevel(
   const Level<Dim>& level, const BrickLattice<Dim>& bricks, Samples<Dim> samples, int threads)
 {
   const Level<Dim> atSamples{ level.Coarsening, level.Grid, level.Dense, std::move(samples), {} };
-  const HermiteRows<Dim> rows = makeRows(atSamples, bricks, 0);
+  const HermiteRows<Dim> rows = makeRows(atSamples, bricks, 0, threads);
   std::vector<float> values;
   BrickOperator<Dim>(bricks, rows, {}, threads).evaluateWithGradient(bricks.coefficients(), values);
   for (std::size_t k = 0; k < rows.Rows.size(); ++k)
@@ -407,8 +427,8 @@ std::vector<float> evaluateLevel(
 }
 
 template std::vector<Level<2>> makeLevels<2>(
-  const Lattice<2>&, Samples<2>, const HierarchicalOptions&);
-template Samples<2> coarserData<2>(const Samples<2>&, int);
+  const Lattice<2>&, Samples<2>, const HierarchicalOptions&, int);
+template Samples<2> coarserData<2>(const Samples<2>&, int, int);
 template std::vector<BrickLattice<2>> makeBricks<2>(const std::vector<Level<2>>&);
 template double occupiedCells<2>(const Level<2>&);
 template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&,
@@ -416,8 +436,8 @@ template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<Bri
 template std::vector<float> evaluateLevel<2>(
   const Level<2>&, const BrickLattice<2>&, Samples<2>, int);
 template std::vector<Level<3>> makeLevels<3>(
-  const Lattice<3>&, Samples<3>, const HierarchicalOptions&);
-template Samples<3> coarserData<3>(const Samples<3>&, int);
+  const Lattice<3>&, Samples<3>, const HierarchicalOptions&, int);
+template Samples<3> coarserData<3>(const Samples<3>&, int, int);
 template std::vector<BrickLattice<3>> makeBricks<3>(const std::vector<Level<3>>&);
 template double occupiedCells<3>(const Level<3>&);
 template LevelReport solveLevel<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&,

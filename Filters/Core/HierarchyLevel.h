@@ -103,12 +103,12 @@ struct Level
  * @param points  sorted
  */
 template <int Dim>
-std::vector<Level<Dim>> makeLevels(
-  const Lattice<Dim>& lattice, Samples<Dim> points, const HierarchicalOptions& options);
+std::vector<Level<Dim>> makeLevels(const Lattice<Dim>& lattice, Samples<Dim> points,
+  const HierarchicalOptions& options, int threads);
 
 /// What a level sees of the data of a finer one.
 template <int Dim>
-Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening);
+Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening, int threads);
 
 /// The bands of the levels, zero.
 template <int Dim>

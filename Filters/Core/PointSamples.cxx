@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PointSamples.h"
 
+#include "Parallel.h"
+
+#include <parallel/algorithm>
+
 namespace ipia
 {
 namespace
@@ -38,10 +42,41 @@ std::uint64_t mortonKey(const Index<Dim>& i)
   }
   return key;
 }
+
+template <int Dim>
+Sample<Dim> meanOf(const Sample<Dim>* begin, const Sample<Dim>* end)
+{
+  Sample<Dim> mean = *begin;
+  if (end - begin == 1)
+  {
+    return mean;
+  }
+  Point<Dim> position = Point<Dim>::Zero(), plain = position, normal = position;
+  double weight = 0, value = 0, fairing = 0;
+  for (const Sample<Dim>* s = begin; s != end; ++s)
+  {
+    const double w = s->Weight;
+    position += w * s->Position;
+    normal += w * s->Normal;
+    value += w * s->Value;
+    fairing += w * s->Fairing;
+    weight += w;
+    mean.HasNormal = mean.HasNormal || s->HasNormal;
+    plain += s->Position;
+  }
+  mean.Weight = static_cast<float>(weight);
+  mean.Position = weight > 0 ? Point<Dim>(position / weight)
+                             : Point<Dim>(plain / static_cast<double>(end - begin));
+  const double share = weight > 0 ? 1 / weight : 0.0;
+  mean.Normal = share * normal;
+  mean.Value = static_cast<float>(share * value);
+  mean.Fairing = weight > 0 ? static_cast<float>(share * fairing) : 1.F;
+  return mean;
+}
 }
 
 template <int Dim>
-Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input)
+Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input, int threads)
 {
   const std::int64_t n = input.Positions.cols(), m = input.ExtraPositions.cols();
   std::vector<std::pair<std::uint64_t, std::int64_t>> order(static_cast<std::size_t>(n + m));
@@ -53,26 +88,30 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
                            .cwiseQuotient(lattice.Spacing);
     return (u * PositionSteps).array().round() / PositionSteps;
   };
-  for (std::int64_t k = 0; k < n + m; ++k)
-  {
-    const Point<Dim> u = positionOf(k);
-    Index<Dim> subCell;
-    for (int a = 0; a < Dim; ++a)
+  parallelChunks(n + m, threads,
+    [&](std::int64_t begin, std::int64_t end)
     {
-      const std::int64_t last = (lattice.cells(a) << SubCellBits) - 1;
-      const auto at = static_cast<std::int64_t>(std::floor(u[a] * (1 << SubCellBits)));
-      subCell[a] = std::min(std::max<std::int64_t>(at, 0), last);
-    }
-    order[static_cast<std::size_t>(k)] = { mortonKey<Dim>(subCell), k };
-  }
-  std::sort(order.begin(), order.end());
-  Samples<Dim> samples;
-  samples.reserve(order.size());
-  for (const auto& entry : order)
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        const Point<Dim> u = positionOf(k);
+        Index<Dim> subCell;
+        for (int a = 0; a < Dim; ++a)
+        {
+          const std::int64_t last = (lattice.cells(a) << SubCellBits) - 1;
+          const auto at = static_cast<std::int64_t>(std::floor(u[a] * (1 << SubCellBits)));
+          subCell[a] = std::min(std::max<std::int64_t>(at, 0), last);
+        }
+        order[static_cast<std::size_t>(k)] = { mortonKey<Dim>(subCell), k };
+      }
+    });
+  __gnu_parallel::sort(order.begin(), order.end(),
+    __gnu_parallel::parallel_tag(static_cast<__gnu_parallel::_ThreadIndex>(threads)));
+  Samples<Dim> samples(order.size());
+  const auto fill = [&](std::size_t at)
   {
-    const std::int64_t k = entry.second;
-    Sample<Dim> sample;
-    sample.Key = entry.first;
+    const std::int64_t k = order[at].second;
+    Sample<Dim>& sample = samples[at];
+    sample.Key = order[at].first;
     sample.Position = positionOf(k);
     const bool extra = k >= n;
     sample.Normal.setZero();
@@ -88,63 +127,45 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
     sample.Value = extra ? static_cast<float>(input.ExtraValues[k - n]) : 0.F;
     const Vector& weights = extra ? input.ExtraWeights : input.Weights;
     sample.Weight = weights.size() == 0 ? 1.F : static_cast<float>(weights[extra ? k - n : k]);
-    samples.push_back(sample);
-  }
+  };
+  parallelChunks(n + m, threads,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        fill(static_cast<std::size_t>(k));
+      }
+    });
   return samples;
 }
 
 template <int Dim>
-Samples<Dim> cluster(const Samples<Dim>& samples, int halvings)
+Samples<Dim> cluster(const Samples<Dim>& samples, int halvings, int threads)
 {
   const int shift = Dim * halvings;
-  std::size_t count = 0;
+  std::vector<std::size_t> begin; // of each cluster
   for (std::size_t k = 0; k < samples.size(); ++k)
   {
-    count += k == 0 || samples[k].Key >> shift != samples[k - 1].Key >> shift;
+    if (k == 0 || samples[k].Key >> shift != samples[k - 1].Key >> shift)
+    {
+      begin.push_back(k);
+    }
   }
-  Samples<Dim> clusters;
-  clusters.reserve(count);
-  for (std::size_t k = 0; k < samples.size();)
-  {
-    Sample<Dim> mean = samples[k];
-    std::size_t end = k;
-    Point<Dim> position = Point<Dim>::Zero(), plain = position, normal = position;
-    double members = 0, weight = 0, value = 0, fairing = 0;
-    mean.HasNormal = false;
-    for (; end < samples.size() && samples[end].Key >> shift == samples[k].Key >> shift; ++end)
+  begin.push_back(samples.size());
+  Samples<Dim> clusters(begin.size() - 1);
+  parallelChunks(static_cast<std::int64_t>(clusters.size()), threads,
+    [&](std::int64_t first, std::int64_t last)
     {
-      const Sample<Dim>& s = samples[end];
-      const double w = s.Weight;
-      position += w * s.Position;
-      normal += w * s.Normal;
-      value += w * s.Value;
-      fairing += w * s.Fairing;
-      weight += w;
-      mean.HasNormal = mean.HasNormal || s.HasNormal;
-      plain += s.Position;
-      ++members;
-    }
-    if (end > k + 1)
-    {
-      mean.Weight = static_cast<float>(weight);
-      mean.Position = weight > 0 ? Point<Dim>(position / weight) : Point<Dim>(plain / members);
-      const double share = weight > 0 ? 1 / weight : 0.0;
-      mean.Normal = share * normal;
-      mean.Value = static_cast<float>(share * value);
-      mean.Fairing = weight > 0 ? static_cast<float>(share * fairing) : 1.F;
-    }
-    else
-    {
-      mean.HasNormal = samples[k].HasNormal;
-    }
-    clusters.push_back(mean);
-    k = end;
-  }
+      for (auto c = static_cast<std::size_t>(first); c < static_cast<std::size_t>(last); ++c)
+      {
+        clusters[c] = meanOf(samples.data() + begin[c], samples.data() + begin[c + 1]);
+      }
+    });
   return clusters;
 }
 
-template Samples<2> sortedSamples<2>(const Lattice<2>&, const HermiteInput<2>&);
-template Samples<3> sortedSamples<3>(const Lattice<3>&, const HermiteInput<3>&);
-template Samples<2> cluster<2>(const Samples<2>&, int);
-template Samples<3> cluster<3>(const Samples<3>&, int);
+template Samples<2> sortedSamples<2>(const Lattice<2>&, const HermiteInput<2>&, int);
+template Samples<3> sortedSamples<3>(const Lattice<3>&, const HermiteInput<3>&, int);
+template Samples<2> cluster<2>(const Samples<2>&, int, int);
+template Samples<3> cluster<3>(const Samples<3>&, int, int);
 }

@@ -50,11 +50,12 @@ constexpr int SubCellBits = 3;
 
 /// All rows in the Morton order of their sub-cells, which nests those of all coarser lattices.
 template <int Dim>
-Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input);
+Samples<Dim> sortedSamples(
+  const Lattice<Dim>& lattice, const HermiteInput<Dim>& input, int threads);
 
 /// Means of the samples that share a sub-cell @a halvings coarser than those of the finest lattice.
 template <int Dim>
-Samples<Dim> cluster(const Samples<Dim>& samples, int halvings);
+Samples<Dim> cluster(const Samples<Dim>& samples, int halvings, int threads);
 }
 
 #endif
