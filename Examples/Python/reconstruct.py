@@ -4,8 +4,8 @@
 
     python3 reconstruct.py scan.ply --output ipia-output
 
-reads, reconstructs, measures and draws, and writes surface.vtp, surface.ply (in single precision),
-f.vti and picture.png there. Where there is no display, which the picture needs, the script runs
+reads, reconstructs, measures and draws, and writes surface.vtp, surface.ply (single precision, no
+normals), f.vti and picture.png there. Where there is no display, which the picture needs, the script runs
 itself under xvfb-run, if that is installed.
 """
 import argparse
