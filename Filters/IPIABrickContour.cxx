@@ -2,6 +2,7 @@
 #include "IPIABrickContour.h"
 
 #include "Core/Parallel.h"
+#include "IPIAComponents.h"
 
 #include "vtkCellArray.h"
 #include "vtkFloatArray.h"
@@ -182,49 +183,11 @@ private:
   vtkNew<vtkFlyingEdges3D> Contour;
 };
 
-/// Sets of vertices that triangles connect.
-class ConnectedSets
+/// Joins the parts: vertices on the same edge become one. Returns the component of each vertex.
+std::vector<vtkIdType> join(const std::vector<PartSurface>& parts, const Placement<3>& place,
+  int pointType, vtkPolyData* surface)
 {
-public:
-  void add() { this->Parent.push_back(static_cast<vtkIdType>(this->Parent.size())); }
-
-  void unite(vtkIdType a, vtkIdType b)
-  {
-    a = this->root(a);
-    b = this->root(b);
-    this->Parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-
-  int count() const
-  {
-    int sets = 0;
-    for (std::size_t k = 0; k < this->Parent.size(); ++k)
-    {
-      sets += this->Parent[k] == static_cast<vtkIdType>(k);
-    }
-    return sets;
-  }
-
-private:
-  vtkIdType root(vtkIdType a)
-  {
-    while (this->Parent[static_cast<std::size_t>(a)] != a)
-    {
-      vtkIdType& parent = this->Parent[static_cast<std::size_t>(a)];
-      parent = this->Parent[static_cast<std::size_t>(parent)];
-      a = parent;
-    }
-    return a;
-  }
-
-  std::vector<vtkIdType> Parent;
-};
-
-/// Joins the parts: vertices on the same edge become one. Returns the number of components.
-int join(const std::vector<PartSurface>& parts, const Placement<3>& place, int pointType,
-  vtkPolyData* surface)
-{
-  ConnectedSets components;
+  DisjointSets components;
   vtkNew<vtkPoints> points;
   points->SetDataType(pointType);
   vtkNew<vtkFloatArray> normals;
@@ -275,7 +238,7 @@ int join(const std::vector<PartSurface>& parts, const Placement<3>& place, int p
   surface->SetPoints(points);
   surface->SetPolys(triangles);
   surface->GetPointData()->SetNormals(normals);
-  return components.count();
+  return components.labels();
 }
 }
 
@@ -290,9 +253,9 @@ double NewtonStep::along(double f, double slope) const
 }
 
 bool contourBricks(const BrickSpline<3>& function, const Placement<3>& place, int pointType,
-  const ProgressCallback& progress, vtkPolyData* surface, int& components)
+  const ProgressCallback& progress, vtkPolyData* surface, std::vector<vtkIdType>& component)
 {
-  components = 0;
+  component.clear();
   surface->Initialize();
   const int threads = resolveThreads(0);
   const std::vector<Block> parts = function.zeroSetParts();
@@ -331,7 +294,7 @@ bool contourBricks(const BrickSpline<3>& function, const Placement<3>& place, in
   {
     return false;
   }
-  components = join(surfaces, place, pointType, surface);
+  component = join(surfaces, place, pointType, surface);
   return true;
 }
 }

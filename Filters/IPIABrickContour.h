@@ -9,6 +9,8 @@
 #include "Core/BrickSpline.h"
 #include "IPIAControlLattice.h"
 
+#include <vector>
+
 class vtkPolyData;
 
 namespace ipia
@@ -31,11 +33,11 @@ struct NewtonStep
  * does not depend on their number.
  *
  * @param pointType   VTK_FLOAT or VTK_DOUBLE
- * @param components  their number is returned here
+ * @param component  of each vertex is returned here
  * @return false if the callback aborted; the surface is then empty
  */
 bool contourBricks(const BrickSpline<3>& function, const Placement<3>& place, int pointType,
-  const ProgressCallback& progress, vtkPolyData* surface, int& components);
+  const ProgressCallback& progress, vtkPolyData* surface, std::vector<vtkIdType>& component);
 }
 
 #endif

@@ -722,10 +722,11 @@ bool vtkIPIAImplicitFitter::IsInBricks() const
 }
 
 bool vtkIPIAImplicitFitter::ContourBricks(int pointType,
-  const std::function<bool(double)>& progress, vtkPolyData* surface, int& components) const
+  const std::function<bool(double)>& progress, vtkPolyData* surface,
+  std::vector<vtkIdType>& component) const
 {
   const ipia::FitSolution<3>& fit = *this->State->Spatial;
-  return ipia::contourBricks(*fit.Bricks, fit.Place, pointType, progress, surface, components);
+  return ipia::contourBricks(*fit.Bricks, fit.Place, pointType, progress, surface, component);
 }
 
 const std::vector<std::array<double, 3>>& vtkIPIAImplicitFitter::FittedPositions() const

@@ -443,7 +443,7 @@ private:
   void UpdateFunctionOnly();
   bool IsInBricks() const;
   bool ContourBricks(int pointType, const std::function<bool(double)>& progress,
-    vtkPolyData* surface, int& components) const;
+    vtkPolyData* surface, std::vector<vtkIdType>& component) const;
   const std::vector<std::array<double, 3>>& FittedPositions() const;
 
   ipia::FitParameters Parameters() const;

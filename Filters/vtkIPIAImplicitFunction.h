@@ -55,8 +55,8 @@ public:
    * Take the function from a control lattice: point array `Coefficient` (one component, N_x N_y N_z
    * values, N >= 4 on each axis but for one axis of 1 in 2-D). The domain is the lattice less one
    * spacing at either end. Where the fit has a far field, the field data hold
-   * - `FarField`, one component, for each box its sign, -1, 0 or 1; 0 where the spline counts. Box i
-   *   of an axis has the width h / 2 and the centre lo + i h / 2, i = 0 ... 2 (N - 3); x varies
+   * - `FarField`, one component, for each box its sign, -1, 0 or 1; 0 where the spline counts. Box
+   * i of an axis has the width h / 2 and the centre lo + i h / 2, i = 0 ... 2 (N - 3); x varies
    *   fastest, the flat axis of 2-D is left out.
    * - `FarFieldMagnitude`, one positive value: |f| in boxes of sign -1 or 1.
    *

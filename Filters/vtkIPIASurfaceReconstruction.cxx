@@ -2,17 +2,16 @@
 #include "vtkIPIASurfaceReconstruction.h"
 
 #include "IPIABrickContour.h"
+#include "IPIAComponents.h"
 #include "vtkIPIAImplicitFitter.h"
 #include "vtkIPIAImplicitFunction.h"
 
-#include "vtkCleanPolyData.h"
 #include "vtkCommand.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkFlyingEdges2D.h"
 #include "vtkFlyingEdges3D.h"
-#include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -21,10 +20,8 @@
 #include "vtkOutputWindow.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkPolyDataConnectivityFilter.h"
 #include "vtkReverseSense.h"
 #include "vtkSMPTools.h"
-#include "vtkStaticPointLocator.h"
 #include "vtkStripper.h"
 #include "vtkVersion.h"
 
@@ -38,8 +35,8 @@ namespace
 {
 /// Share of the progress that the fit takes.
 constexpr double ProgressOfFit = 0.7;
-/// A component stays if it has this share of the data points that its size makes one expect.
-constexpr double LeastShareOfData = 0.02;
+/// Data farther from a component than this many knot spacings are not its data.
+constexpr double ReachOfData = 3;
 /// Rounding to float shows beyond this share of the knot spacing.
 constexpr double VisibleRounding = 1e-3;
 constexpr double FloatRounding = 6e-8;
@@ -206,14 +203,14 @@ int vtkIPIASurfaceReconstruction::RequestData(
   }
   this->Fitter->UpdateFunctionOnly();
   bool done = this->Fitter->GetImplicitFunction()->HasControlLattice();
-  int components = 2; // or more, as far as one knows
+  std::vector<vtkIdType> component; // of each vertex
   const auto contourProgress = [this](double share)
   { return this->ReportProgress(ProgressOfFit + (1 - ProgressOfFit) * share); };
   if (done)
   {
     if (this->Fitter->IsInBricks())
     {
-      done = this->Fitter->ContourBricks(this->PointType(), contourProgress, surface, components);
+      done = this->Fitter->ContourBricks(this->PointType(), contourProgress, surface, component);
     }
     else
     {
@@ -222,13 +219,15 @@ int vtkIPIASurfaceReconstruction::RequestData(
       if (done)
       {
         this->MoveOntoZeroSet(surface, this->Fitter->GetOutput());
+        component = ipia::componentsOf(surface);
       }
     }
     surface->GetFieldData()->ShallowCopy(this->Fitter->GetOutput()->GetFieldData());
   }
-  if (done && this->ComponentFilter && components > 1)
+  if (done && this->ComponentFilter)
   {
-    this->LeaveOutComponents(surface);
+    this->NumberOfComponentsLeftOut = ipia::leaveOutComponents(
+      surface, component, this->Fitter->FittedPositions(), ReachOfData * this->KnotSpacing());
   }
   // Neither the input nor the samples are needed any more; the function and the figures stay.
   for (int port = 0; port < this->Fitter->GetNumberOfOutputPorts(); ++port)
@@ -242,22 +241,32 @@ int vtkIPIASurfaceReconstruction::RequestData(
   return 1;
 }
 
-int vtkIPIASurfaceReconstruction::PointType() const
+double vtkIPIASurfaceReconstruction::KnotSpacing() const
 {
-  double farthest = 0, spacing = VTK_DOUBLE_MAX;
+  double spacing = VTK_DOUBLE_MAX;
   const double* bounds = this->Fitter->GetModelBoundsUsed();
   for (int axis = 0; axis < 3; ++axis)
   {
-    farthest = std::max({ farthest, std::abs(bounds[2 * axis]), std::abs(bounds[2 * axis + 1]) });
     const int cells = this->Fitter->GetGridSizeUsed()[axis] - 3;
     if (cells > 0)
     {
       spacing = std::min(spacing, (bounds[2 * axis + 1] - bounds[2 * axis]) / cells);
     }
   }
+  return spacing;
+}
+
+int vtkIPIASurfaceReconstruction::PointType() const
+{
+  const double* bounds = this->Fitter->GetModelBoundsUsed();
+  double farthest = 0;
+  for (int k = 0; k < 6; ++k)
+  {
+    farthest = std::max(farthest, std::abs(bounds[k]));
+  }
   const bool wide = this->OutputPointsPrecision == DOUBLE_PRECISION ||
     (this->OutputPointsPrecision == DEFAULT_PRECISION &&
-      farthest * FloatRounding > VisibleRounding * spacing);
+      farthest * FloatRounding > VisibleRounding * this->KnotSpacing());
   return wide ? VTK_DOUBLE : VTK_FLOAT;
 }
 
@@ -319,67 +328,6 @@ void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, vtkImag
     });
   surface->SetPoints(after);
   surface->GetPointData()->SetNormals(normals);
-}
-
-void vtkIPIASurfaceReconstruction::LeaveOutComponents(vtkPolyData* surface)
-{
-  vtkNew<vtkPolyDataConnectivityFilter> components;
-  components->SetInputData(surface);
-  components->SetExtractionModeToAllRegions();
-  components->ColorRegionsOn();
-  components->Update();
-  const int n = components->GetNumberOfExtractedRegions();
-  if (n < 2)
-  {
-    return;
-  }
-  auto* regions =
-    vtkIdTypeArray::SafeDownCast(components->GetOutput()->GetPointData()->GetArray("RegionId"));
-  std::vector<double> vertices(static_cast<std::size_t>(n), 0.0), data(vertices);
-  for (vtkIdType i = 0; i < regions->GetNumberOfTuples(); ++i)
-  {
-    ++vertices[static_cast<std::size_t>(regions->GetValue(i))];
-  }
-  vtkNew<vtkStaticPointLocator> locator;
-  locator->SetDataSet(components->GetOutput());
-  locator->BuildLocator();
-  const auto& points = this->Fitter->FittedPositions();
-  for (const auto& point : points)
-  {
-    const vtkIdType nearest = locator->FindClosestPoint(point.data());
-    ++data[static_cast<std::size_t>(regions->GetValue(nearest))];
-  }
-  const double perVertex =
-    static_cast<double>(points.size()) / static_cast<double>(regions->GetNumberOfTuples());
-  components->SetExtractionModeToSpecifiedRegions();
-  for (int r = 0; r < n; ++r)
-  {
-    const auto k = static_cast<std::size_t>(r);
-    if (data[k] >= LeastShareOfData * perVertex * vertices[k])
-    {
-      components->AddSpecifiedRegion(r);
-    }
-    else
-    {
-      ++this->NumberOfComponentsLeftOut;
-    }
-  }
-  if (this->NumberOfComponentsLeftOut > 0)
-  {
-    components->ColorRegionsOff();
-    components->Update();
-    // The filter keeps the vertices of what it leaves out.
-    vtkNew<vtkCleanPolyData> unused;
-    unused->SetInputConnection(components->GetOutputPort());
-    unused->PointMergingOff();
-    unused->ConvertPolysToLinesOff();
-    unused->ConvertLinesToPointsOff();
-    unused->Update();
-    vtkNew<vtkFieldData> field;
-    field->ShallowCopy(surface->GetFieldData());
-    surface->ShallowCopy(unused->GetOutput());
-    surface->GetFieldData()->ShallowCopy(field);
-  }
 }
 
 void vtkIPIASurfaceReconstruction::PrintSelf(ostream& os, vtkIndent indent)

@@ -64,7 +64,7 @@ public:
   ///@{
   /**
    * Leave out components that hardly any data point is nearest to: fewer than a fiftieth of what
-   * their share of the vertices would make one expect. Default on.
+   * their share of the vertices would make one expect. The largest stays. Default on.
    */
   vtkSetMacro(ComponentFilter, bool);
   vtkGetMacro(ComponentFilter, bool);
@@ -106,10 +106,10 @@ private:
 
   bool ReportProgress(double share);
   void ForwardEvent(vtkObject* caller, unsigned long event, void* data);
+  double KnotSpacing() const;
   int PointType() const;
   void ContourImage(vtkPolyData* surface);
   void MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled);
-  void LeaveOutComponents(vtkPolyData* surface);
 
   vtkNew<vtkIPIAImplicitFitter> Fitter;
 };

@@ -14,41 +14,252 @@ using Float4 = float __attribute__((vector_size(16)));
 using Float8 = float __attribute__((vector_size(32)));
 using Float16 = float __attribute__((vector_size(64)));
 
+/// Four rows of four coefficients, where registers hold sixteen.
+struct OneRegister
+{
+  Float16 V;
+
+  static IPIA_INLINE OneRegister zero() { return { Float16{} }; }
+
+  /// Row j at from + j * stride.
+  static IPIA_INLINE OneRegister load(const float* from, int stride)
+  {
+    Float4 r[4];
+    for (int j = 0; j < 4; ++j)
+    {
+      std::memcpy(&r[j], from + j * stride, sizeof(Float4));
+    }
+    const Float8 low = __builtin_shufflevector(r[0], r[1], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Float8 high = __builtin_shufflevector(r[2], r[3], 0, 1, 2, 3, 4, 5, 6, 7);
+    return { __builtin_shufflevector(
+      low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) };
+  }
+
+  IPIA_INLINE Float4 row(int j) const
+  {
+    const Float8 half = j < 2
+      ? __builtin_shufflevector(this->V, this->V, 0, 1, 2, 3, 4, 5, 6, 7)
+      : __builtin_shufflevector(this->V, this->V, 8, 9, 10, 11, 12, 13, 14, 15);
+    return j % 2 == 0 ? __builtin_shufflevector(half, half, 0, 1, 2, 3)
+                      : __builtin_shufflevector(half, half, 4, 5, 6, 7);
+  }
+
+  /// v in every row. In steps that double a vector: GCC 12 takes a wider step through memory.
+  static IPIA_INLINE OneRegister rows(const Float4& v)
+  {
+    const Float8 two = __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
+    return { __builtin_shufflevector(
+      two, two, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) };
+  }
+
+  /// v[j] all over row j.
+  static IPIA_INLINE OneRegister columns(const Float4& v)
+  {
+    const Float16 four = rows(v).V;
+    return { __builtin_shufflevector(four, four, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3) };
+  }
+
+  /// The sum of the rows of a, b, c and a once more, as four rows.
+  static IPIA_INLINE OneRegister sumsOfRows(
+    const OneRegister& a, const OneRegister& b, const OneRegister& c)
+  {
+    const Float16 ab =
+      __builtin_shufflevector(a.V, b.V, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
+      __builtin_shufflevector(
+        a.V, b.V, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+    const Float16 ca =
+      __builtin_shufflevector(c.V, a.V, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
+      __builtin_shufflevector(
+        c.V, a.V, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+    return { __builtin_shufflevector(
+               ab, ca, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27) +
+      __builtin_shufflevector(ab, ca, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31) };
+  }
+
+  /// The sum of each row all over it.
+  IPIA_INLINE OneRegister sumsInRows() const
+  {
+    const Float16 two = this->V +
+      __builtin_shufflevector(
+        this->V, this->V, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
+    return { two +
+      __builtin_shufflevector(two, two, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14) };
+  }
+
+  /// Row j in every row.
+  template <int J>
+  IPIA_INLINE OneRegister everyRow() const
+  {
+    constexpr int k = 4 * J;
+    return { __builtin_shufflevector(this->V, this->V, k, k + 1, k + 2, k + 3, k, k + 1, k + 2,
+      k + 3, k, k + 1, k + 2, k + 3, k, k + 1, k + 2, k + 3) };
+  }
+
+  /// v in the first three rows, last in the fourth.
+  static IPIA_INLINE OneRegister threeAndOne(const Float4& v, const Float4& last)
+  {
+    const Float8 two = __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
+    const Float8 end = __builtin_shufflevector(v, last, 0, 1, 2, 3, 4, 5, 6, 7);
+    return { __builtin_shufflevector(
+      two, end, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) };
+  }
+
+  friend IPIA_INLINE OneRegister operator*(const OneRegister& a, const OneRegister& b)
+  {
+    return { a.V * b.V };
+  }
+  friend IPIA_INLINE OneRegister operator+(const OneRegister& a, const OneRegister& b)
+  {
+    return { a.V + b.V };
+  }
+  friend IPIA_INLINE OneRegister operator-(const OneRegister& a, const OneRegister& b)
+  {
+    return { a.V - b.V };
+  }
+  friend IPIA_INLINE OneRegister operator*(float a, const OneRegister& b) { return { a * b.V }; }
+  IPIA_INLINE void operator+=(const OneRegister& other) { this->V += other.V; }
+};
+
+/// The same where they hold eight.
+struct TwoRegisters
+{
+  Float8 V[2];
+
+  static IPIA_INLINE TwoRegisters zero() { return { { Float8{}, Float8{} } }; }
+
+  static IPIA_INLINE TwoRegisters load(const float* from, int stride)
+  {
+    TwoRegisters loaded;
+    for (int half = 0; half < 2; ++half)
+    {
+      Float4 a, b;
+      std::memcpy(&a, from + 2 * half * stride, sizeof(Float4));
+      std::memcpy(&b, from + (2 * half + 1) * stride, sizeof(Float4));
+      loaded.V[half] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    return loaded;
+  }
+
+  IPIA_INLINE Float4 row(int j) const
+  {
+    const Float8& half = this->V[j / 2];
+    return j % 2 == 0 ? __builtin_shufflevector(half, half, 0, 1, 2, 3)
+                      : __builtin_shufflevector(half, half, 4, 5, 6, 7);
+  }
+
+  static IPIA_INLINE TwoRegisters rows(const Float4& v)
+  {
+    const Float8 two = __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
+    return { { two, two } };
+  }
+
+  static IPIA_INLINE TwoRegisters columns(const Float4& v)
+  {
+    const Float8 two = __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
+    return { { __builtin_shufflevector(two, two, 0, 0, 0, 0, 5, 5, 5, 5),
+      __builtin_shufflevector(two, two, 2, 2, 2, 2, 7, 7, 7, 7) } };
+  }
+
+  static IPIA_INLINE TwoRegisters sumsOfRows(
+    const TwoRegisters& a, const TwoRegisters& b, const TwoRegisters& c)
+  {
+    const Float8 a2 = a.V[0] + a.V[1], b2 = b.V[0] + b.V[1], c2 = c.V[0] + c.V[1];
+    return { { __builtin_shufflevector(a2, b2, 0, 1, 2, 3, 8, 9, 10, 11) +
+        __builtin_shufflevector(a2, b2, 4, 5, 6, 7, 12, 13, 14, 15),
+      __builtin_shufflevector(c2, a2, 0, 1, 2, 3, 8, 9, 10, 11) +
+        __builtin_shufflevector(c2, a2, 4, 5, 6, 7, 12, 13, 14, 15) } };
+  }
+
+  IPIA_INLINE TwoRegisters sumsInRows() const
+  {
+    TwoRegisters sums;
+    for (int half = 0; half < 2; ++half)
+    {
+      const Float8& v = this->V[half];
+      const Float8 two = v + __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5);
+      sums.V[half] = two + __builtin_shufflevector(two, two, 1, 0, 3, 2, 5, 4, 7, 6);
+    }
+    return sums;
+  }
+
+  template <int J>
+  IPIA_INLINE TwoRegisters everyRow() const
+  {
+    constexpr int k = 4 * (J % 2);
+    const Float8& v = this->V[J / 2];
+    const Float8 two =
+      __builtin_shufflevector(v, v, k, k + 1, k + 2, k + 3, k, k + 1, k + 2, k + 3);
+    return { { two, two } };
+  }
+
+  static IPIA_INLINE TwoRegisters threeAndOne(const Float4& v, const Float4& last)
+  {
+    return { { __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7),
+      __builtin_shufflevector(v, last, 0, 1, 2, 3, 4, 5, 6, 7) } };
+  }
+
+  friend IPIA_INLINE TwoRegisters operator*(const TwoRegisters& a, const TwoRegisters& b)
+  {
+    return { { a.V[0] * b.V[0], a.V[1] * b.V[1] } };
+  }
+  friend IPIA_INLINE TwoRegisters operator+(const TwoRegisters& a, const TwoRegisters& b)
+  {
+    return { { a.V[0] + b.V[0], a.V[1] + b.V[1] } };
+  }
+  friend IPIA_INLINE TwoRegisters operator-(const TwoRegisters& a, const TwoRegisters& b)
+  {
+    return { { a.V[0] - b.V[0], a.V[1] - b.V[1] } };
+  }
+  friend IPIA_INLINE TwoRegisters operator*(float a, const TwoRegisters& b)
+  {
+    return { { a * b.V[0], a * b.V[1] } };
+  }
+  IPIA_INLINE void operator+=(const TwoRegisters& other)
+  {
+    this->V[0] += other.V[0];
+    this->V[1] += other.V[1];
+  }
+};
+
 // The cubic basis and its derivative as polynomials in t, one lane a basis function.
 constexpr Float4 Basis0 = { 1.F / 6, 4.F / 6, 1.F / 6, 0 };
 constexpr Float4 Basis1 = { -.5F, 0, .5F, 0 };
 constexpr Float4 Basis2 = { .5F, -1, .5F, 0 };
 constexpr Float4 Basis3 = { -1.F / 6, .5F, -.5F, 1.F / 6 };
 
-struct AxisBasis
+/// Basis functions and derivatives at the local coordinates t[a] of a row, four per axis.
+template <typename Wide>
+struct RowBasis
 {
-  Float4 Value, Slope;
+  alignas(64) float Value[16];
+  alignas(64) float Slope[16];
+
+  /// @param t       four floats, as many of which count as there are axes
+  /// @param squared both are squared
+  IPIA_INLINE RowBasis(const float* t, bool squared)
+  {
+    Float4 four;
+    std::memcpy(&four, t, sizeof(four));
+    const Wide u = Wide::columns(four), b1 = Wide::rows(Basis1), b2 = Wide::rows(Basis2),
+               b3 = Wide::rows(Basis3);
+    Wide value = Wide::rows(Basis0) + u * (b1 + u * (b2 + u * b3));
+    Wide slope = b1 + u * (2.F * b2 + 3.F * (u * b3));
+    if (squared)
+    {
+      value = value * value;
+      slope = slope * slope;
+    }
+    std::memcpy(this->Value, &value, sizeof(value));
+    std::memcpy(this->Slope, &slope, sizeof(slope));
+  }
+
+  static IPIA_INLINE Float4 axis(const float* from, int a)
+  {
+    Float4 v;
+    std::memcpy(&v, from + 4 * a, sizeof(v));
+    return v;
+  }
 };
-
-IPIA_INLINE void evaluateBasis(float t, Float4& value, Float4& slope)
-{
-  value = Basis0 + t * (Basis1 + t * (Basis2 + t * Basis3));
-  slope = Basis1 + t * (2.F * Basis2 + (3.F * t) * Basis3);
-}
-
-// Four lanes to sixteen, in steps that double a vector: GCC 12 takes a wider step through memory
-// and waits for it there.
-#define IPIA_TWICE(v) __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7)
-#define IPIA_REPEAT_ALL(v) \
-  __builtin_shufflevector( \
-    IPIA_TWICE(v), IPIA_TWICE(v), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
-#define IPIA_REPEAT_EACH(v) \
-  __builtin_shufflevector(  \
-    IPIA_REPEAT_ALL(v), IPIA_REPEAT_ALL(v), 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3)
-
-IPIA_INLINE float sumOf(const Float16& v)
-{
-  const Float8 a = __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7) +
-    __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
-  const Float4 b =
-    __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
-  return (b[0] + b[2]) + (b[1] + b[3]);
-}
 
 template <int Dim>
 constexpr int ChildCount = 1 << Dim;
@@ -96,7 +307,7 @@ IPIA_INLINE void forWindowRows(const Action& action)
   }
 }
 
-template <int Dim, Sweep Kind>
+template <int Dim, Sweep Kind, typename Wide>
 struct RowKernel
 {
   static IPIA_INLINE void run(const BrickArguments<Dim>& arguments)
@@ -104,6 +315,7 @@ struct RowKernel
     constexpr int slices = Dim == 3 ? Order : 1;
     constexpr bool gather = Kind != Sweep::Diagonal && Kind != Sweep::Density;
     constexpr bool scatter = Kind != Sweep::Value && Kind != Sweep::ValueAndSlope;
+    constexpr int sliceSize = WindowWidth * WindowWidth;
     alignas(64) float in[WindowSize<Dim>];
     alignas(64) float out[WindowSize<Dim>];
     if (gather)
@@ -124,101 +336,79 @@ struct RowKernel
     {
       std::memset(out, 0, sizeof(out));
     }
+    // Value, y, z and x derivative of a row have one row of lanes each; which weight counts there.
+    Float4 ofGradient{};
+    ofGradient[3] = arguments.AxisScale[0];
+    ofGradient[1] = arguments.AxisScale[1];
+    ofGradient[2] = Dim == 3 ? arguments.AxisScale[Dim - 1] : 0.F;
+    const Wide valueScale = Wide::columns(Float4{ 1, 0, 0, 0 });
+    const Wide gradientScale = Kind == Sweep::Density ? Wide::zero() : Wide::columns(ofGradient);
 
     for (auto row = arguments.Begin; row != arguments.End;)
     {
       const std::int32_t cell = row->Cell;
       const int corner = (cell & 3) + WindowWidth * ((cell >> 2 & 3) + WindowWidth * (cell >> 4));
-      Float16 c[slices], add[slices];
+      Wide c[slices], add[slices];
       for (int k = 0; k < slices; ++k)
       {
-        add[k] = Float16{};
+        add[k] = Wide::zero();
         if (gather)
         {
-          const float* at = in + corner + k * WindowWidth * WindowWidth;
-          for (int j = 0; j < Order; ++j)
-          {
-            std::memcpy(reinterpret_cast<float*>(&c[k]) + 4 * j, at + j * WindowWidth, 16);
-          }
+          c[k] = Wide::load(in + corner + k * sliceSize, WindowWidth);
         }
       }
       for (; row != arguments.End && row->Cell == cell; ++row)
       {
-        Float4 x, dx, y, dy, z{ 1, 0, 0, 0 }, dz{};
-        evaluateBasis(row->T[0], x, dx);
-        evaluateBasis(row->T[1], y, dy);
-        if (Dim == 3)
-        {
-          evaluateBasis(row->T[Dim - 1], z, dz);
-        }
-        if (Kind == Sweep::Diagonal)
-        {
-          x *= x;
-          y *= y;
-          z *= z;
-          dx *= dx * arguments.AxisScale[0];
-          dy *= dy * arguments.AxisScale[1];
-          dz *= dz * arguments.AxisScale[Dim - 1];
-        }
-        const Float16 xx = IPIA_REPEAT_ALL(x), yy = IPIA_REPEAT_EACH(y);
-        const Float16 yx = yy * xx;
-        const float weight = row->Weight;
-        if (Kind == Sweep::Value || Kind == Sweep::Density)
-        {
-          if (Kind == Sweep::Value)
-          {
-            Float16 g = z[0] * c[0];
-            for (int k = 1; k < slices; ++k)
-            {
-              g += z[k] * c[k];
-            }
-            arguments.Values[row->Source] = sumOf(g * yx);
-          }
-          else
-          {
-            const Float16 s = weight * yx;
-            for (int k = 0; k < slices; ++k)
-            {
-              add[k] += z[k] * s;
-            }
-          }
-          continue;
-        }
-
-        const Float16 ydx = yy * IPIA_REPEAT_ALL(dx);
-        const Float16 dyx = IPIA_REPEAT_EACH(dy) * xx;
-        float value = weight, slopeX = row->GradientWeight, slopeY = slopeX, slopeZ = slopeX;
+        const RowBasis<Wide> basis(row->T.data(), Kind == Sweep::Diagonal);
+        const Float4 x = basis.axis(basis.Value, 0), dx = basis.axis(basis.Slope, 0);
+        const Wide yy = Wide::columns(basis.axis(basis.Value, 1));
+        const Wide dyy = Wide::columns(basis.axis(basis.Slope, 1));
+        constexpr float one[1] = { 1 }, none[1] = { 0 };
+        const float* z = Dim == 3 ? basis.Value + 8 : one;
+        const float* dz = Dim == 3 ? basis.Slope + 8 : none;
+        const Wide along = Wide::threeAndOne(x, dx);
+        Wide r = row->Weight * valueScale + row->GradientWeight * gradientScale;
         if (gather)
         {
-          Float16 g = z[0] * c[0], gz = dz[0] * c[0];
+          Wide g = z[0] * c[0], gz = dz[0] * c[0];
           for (int k = 1; k < slices; ++k)
           {
             g += z[k] * c[k];
             gz += dz[k] * c[k];
           }
-          const float f = sumOf(g * yx), fx = sumOf(g * ydx), fy = sumOf(g * dyx);
-          const float fz = Dim == 3 ? sumOf(gz * yx) : 0.F;
-          if (Kind == Sweep::ValueAndSlope)
+          const Wide f = (Wide::sumsOfRows(g * yy, g * dyy, gz * yy) * along).sumsInRows();
+          if (!scatter)
           {
-            float* at = arguments.Values + static_cast<std::int64_t>(row->Source) * (1 + Dim);
-            at[0] = f;
-            at[1] = fx;
-            at[2] = fy;
-            if (Dim == 3)
+            float* at = arguments.Values +
+              static_cast<std::int64_t>(row->Source) * (Kind == Sweep::Value ? 1 : 1 + Dim);
+            at[0] = f.row(0)[0];
+            if (Kind == Sweep::ValueAndSlope)
             {
-              at[Dim] = fz;
+              at[1] = f.row(3)[0];
+              at[2] = f.row(1)[0];
+              if (Dim == 3)
+              {
+                at[Dim] = f.row(2)[0];
+              }
             }
             continue;
           }
-          constexpr float side = Kind == Sweep::Residual ? -1.F : 1.F;
-          constexpr float target = Kind == Sweep::Residual ? 1.F : 0.F;
-          value *= side * (f - target * row->Value);
-          slopeX *= side * arguments.AxisScale[0] * (fx - target * row->Slope[0]);
-          slopeY *= side * arguments.AxisScale[1] * (fy - target * row->Slope[1]);
-          slopeZ *= side * arguments.AxisScale[Dim - 1] * (fz - target * row->Slope[Dim - 1]);
+          if (Kind == Sweep::Residual)
+          {
+            Float4 target;
+            std::memcpy(&target, &row->Value, sizeof(target));
+            target = __builtin_shufflevector(target, target, 0, 2, 3, 1);
+            r = r * (Wide::columns(target) - f);
+          }
+          else
+          {
+            r = r * f;
+          }
         }
-        const Float16 s = value * yx + slopeX * ydx + slopeY * dyx;
-        const Float16 t = slopeZ * yx;
+        r = r * along;
+        Wide s = yy * (r.template everyRow<0>() + r.template everyRow<3>());
+        s += dyy * r.template everyRow<1>();
+        const Wide t = yy * r.template everyRow<2>();
         for (int k = 0; k < slices; ++k)
         {
           add[k] += z[k] * s;
@@ -232,13 +422,12 @@ struct RowKernel
       {
         for (int k = 0; k < slices; ++k)
         {
-          float* at = out + corner + k * WindowWidth * WindowWidth;
+          float* at = out + corner + k * sliceSize;
           for (int j = 0; j < Order; ++j)
           {
-            Float4 total, part;
+            Float4 total;
             std::memcpy(&total, at + j * WindowWidth, sizeof(total));
-            std::memcpy(&part, reinterpret_cast<const float*>(&add[k]) + 4 * j, sizeof(part));
-            total += part;
+            total += add[k].row(j);
             std::memcpy(at + j * WindowWidth, &total, sizeof(total));
           }
         }
@@ -481,7 +670,7 @@ BrickOperator<Dim>::BrickOperator(const BrickLattice<Dim>& bricks, const Hermite
 }
 
 template <int Dim>
-template <typename Kernel>
+template <int Kind>
 void BrickOperator<Dim>::sweepRows(
   const float* input, std::int32_t inputBricks, float* output) const
 {
@@ -520,7 +709,9 @@ void BrickOperator<Dim>::sweepRows(
           id != BrickLattice<Dim>::Absent && id < this->Bricks.numberOfActiveBricks() ? output + at
                                                                                       : nullptr;
       }
-      dispatch<Kernel>(arguments);
+      constexpr auto kind = static_cast<Sweep>(Kind);
+      dispatchByWidth<RowKernel<Dim, kind, OneRegister>, RowKernel<Dim, kind, TwoRegisters>>(
+        arguments);
     }
   }
 }
@@ -567,7 +758,7 @@ void BrickOperator<Dim>::residual(std::vector<float>& gradient) const
 {
   const float* c = this->Bricks.coefficients().data();
   this->applyFairing(c, this->Bricks.numberOfBricks(), -1, gradient);
-  this->sweepRows<RowKernel<Dim, Sweep::Residual>>(
+  this->sweepRows<static_cast<int>(Sweep::Residual)>(
     c, this->Bricks.numberOfBricks(), gradient.data());
 }
 
@@ -575,7 +766,7 @@ template <int Dim>
 void BrickOperator<Dim>::product(const std::vector<float>& p, std::vector<float>& product) const
 {
   this->applyFairing(p.data(), this->Bricks.numberOfActiveBricks(), 1, product);
-  this->sweepRows<RowKernel<Dim, Sweep::Product>>(
+  this->sweepRows<static_cast<int>(Sweep::Product)>(
     p.data(), this->Bricks.numberOfActiveBricks(), product.data());
 }
 
@@ -594,7 +785,7 @@ void BrickOperator<Dim>::diagonal(std::vector<float>& diagonal) const
     this->Fairing.ThinPlate * (sum * sum + squares) + this->Fairing.Membrane * sum;
   diagonal.assign(
     static_cast<std::size_t>(this->Bricks.numberOfActiveBricks()) * BrickSize<Dim>, fairing);
-  this->sweepRows<RowKernel<Dim, Sweep::Diagonal>>(nullptr, 0, diagonal.data());
+  this->sweepRows<static_cast<int>(Sweep::Diagonal)>(nullptr, 0, diagonal.data());
 }
 
 template <int Dim>
@@ -621,7 +812,7 @@ template <int Dim>
 void BrickOperator<Dim>::density(std::vector<float>& sums) const
 {
   sums.assign(static_cast<std::size_t>(this->Bricks.numberOfActiveBricks()) * BrickSize<Dim>, 0.F);
-  this->sweepRows<RowKernel<Dim, Sweep::Density>>(nullptr, 0, sums.data());
+  this->sweepRows<static_cast<int>(Sweep::Density)>(nullptr, 0, sums.data());
 }
 
 template <int Dim>
@@ -629,7 +820,7 @@ void BrickOperator<Dim>::evaluate(
   const std::vector<float>& coefficients, std::vector<float>& values) const
 {
   values.resize(this->Rows.Rows.size());
-  this->sweepRows<RowKernel<Dim, Sweep::Value>>(coefficients.data(),
+  this->sweepRows<static_cast<int>(Sweep::Value)>(coefficients.data(),
     static_cast<std::int32_t>(coefficients.size() / BrickSize<Dim>), values.data());
 }
 
@@ -638,7 +829,7 @@ void BrickOperator<Dim>::evaluateWithGradient(
   const std::vector<float>& coefficients, std::vector<float>& values) const
 {
   values.resize(this->Rows.Rows.size() * (1 + Dim));
-  this->sweepRows<RowKernel<Dim, Sweep::ValueAndSlope>>(coefficients.data(),
+  this->sweepRows<static_cast<int>(Sweep::ValueAndSlope)>(coefficients.data(),
     static_cast<std::int32_t>(coefficients.size() / BrickSize<Dim>), values.data());
 }
 

@@ -62,7 +62,7 @@ public:
     const std::vector<float>& coefficients, std::vector<float>& values) const;
 
 private:
-  template <typename Kernel>
+  template <int Kind>
   void sweepRows(const float* input, std::int32_t inputBricks, float* output) const;
   void applyFairing(
     const float* input, std::int32_t inputBricks, float sign, std::vector<float>& output) const;

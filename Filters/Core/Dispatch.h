@@ -57,14 +57,15 @@ __attribute__((target("avx2,fma"))) void runAvx2(Arguments&&... arguments)
 }
 #endif
 
-template <typename Kernel, typename... Arguments>
-void dispatch(Arguments&&... arguments)
+/// Runs the first kernel where registers hold sixteen floats, otherwise the second.
+template <typename WideKernel, typename Kernel, typename... Arguments>
+void dispatchByWidth(Arguments&&... arguments)
 {
 #if defined(__x86_64__)
   switch (instructionSet())
   {
     case InstructionSet::Avx512:
-      runAvx512<Kernel>(arguments...);
+      runAvx512<WideKernel>(arguments...);
       return;
     case InstructionSet::Avx2:
       runAvx2<Kernel>(arguments...);
@@ -74,6 +75,12 @@ void dispatch(Arguments&&... arguments)
   }
 #endif
   Kernel::run(arguments...);
+}
+
+template <typename Kernel, typename... Arguments>
+void dispatch(Arguments&&... arguments)
+{
+  dispatchByWidth<Kernel, Kernel>(arguments...);
 }
 }
 

@@ -16,9 +16,9 @@ template <int Dim>
 struct HermiteRow
 {
   std::array<float, Dim> T;
-  std::array<float, Dim> Slope;
-  float Value;
   float Weight;
+  float Value; ///< the kernels load Value and Slope as one vector
+  std::array<float, Dim> Slope;
   float GradientWeight;
   std::int32_t Cell;   ///< local index of the knot cell in its brick, x fastest
   std::int32_t Source; ///< index of the point or cluster it stands for
