@@ -503,8 +503,8 @@ def reconstruct(path, folder, picture):
     print(f"\nlattice {times(size)} coefficients, {fitter.GetNumberOfLevelsUsed()} levels; ", end="")
     print(f"f.vti {times(samples)} samples")
     if fitter.GetSmoothingLengthUsed() > 0:
-        print(f"noisy points, {fitter.GetNoiseFound():.4g} from a coarse fit: ", end="")
-        print(f"smoothed over lengths below {fitter.GetSmoothingLengthUsed():.4g}")
+        print(f"noise of {fitter.GetNoiseFound():.4g} found, ", end="")
+        print(f"smoothed below a length of {fitter.GetSmoothingLengthUsed():.4g}")
     if by_faces is None:
         print(f"curve of {surface.GetNumberOfPoints():,} points, ", end="")
     else:

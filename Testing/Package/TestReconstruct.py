@@ -5,6 +5,7 @@ TestReconstruct.py <path of reconstruct.py>
 """
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -144,6 +145,18 @@ class TestReconstruct(unittest.TestCase):
                 np.testing.assert_allclose(curve[:, across], 5, atol=1e-6)
                 radii = np.linalg.norm(np.delete(curve, across, axis=1), axis=1)
                 np.testing.assert_allclose(radii, RADIUS, rtol=1e-4)
+
+    def test_noise_is_told(self):
+        points, normals = sphere(8000)
+        random = np.random.default_rng(1)
+        points = points + random.normal(0, 0.02, points.shape)
+        path = self.file("noisy.xyz", np.hstack((points, normals)))
+        result = self.run_script(path, "--no-picture")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        noise = re.search(r"noise of (\S+) found, smoothed below a length of \S+", result.stdout)
+        self.assertIsNotNone(noise, result.stdout)
+        self.assertAlmostEqual(float(noise[1]), 0.02, delta=0.004)
+        self.assert_is_sphere()
 
     def test_distances_are_those_of_the_points(self):
         surface = vtkSphereSource()
