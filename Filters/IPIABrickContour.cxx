@@ -117,33 +117,36 @@ private:
       corner[a] = static_cast<double>(f.Corner[static_cast<std::size_t>(a)]);
       begin[a] = static_cast<double>(f.Begin[static_cast<std::size_t>(a)]);
     }
-    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+    const vtkIdType n = points->GetNumberOfPoints();
+    this->Positions.resize(3, n);
+    for (vtkIdType i = 0; i < n; ++i)
     {
-      Point<3> u, g; // u in samples of the block
+      Point<3> u; // in samples of the block
       points->GetPoint(i, u.data());
       surface.Edges.push_back(this->edgeOf(block, u));
-      Point<3> x = begin + 0.5 * u;
-      const auto valueAndGradient = [&]
-      {
-        const double value = f.Spline.valueAndGradient(x, g);
-        g = g.cwiseQuotient(spacing);
-        return value;
-      };
-      const double value = valueAndGradient();
+      this->Positions.col(i) = begin + 0.5 * u;
+    }
+    f.Spline.valuesAndGradients(this->Positions, this->F, this->Gradients);
+    for (vtkIdType i = 0; i < n; ++i)
+    {
+      const Point<3> g = this->Gradients.col(i).cwiseQuotient(spacing);
       const double slope = g.norm();
-      const double step = this->Newton.along(value, slope);
+      const double step = this->Newton.along(this->F[i], slope);
       if (step != 0)
       {
-        x += (step / slope * g).cwiseQuotient(spacing);
-        valueAndGradient();
+        this->Positions.col(i) += (step / slope * g).cwiseQuotient(spacing);
       }
-      surface.Points.push_back((corner + x).cwiseProduct(spacing));
-      surface.Normals.push_back(g.normalized());
+    }
+    f.Spline.valuesAndGradients(this->Positions, this->F, this->Gradients);
+    for (vtkIdType i = 0; i < n; ++i)
+    {
+      surface.Points.push_back((corner + this->Positions.col(i)).cwiseProduct(spacing));
+      surface.Normals.push_back(this->Gradients.col(i).cwiseQuotient(spacing).normalized());
     }
     vtkCellArray* triangles = found->GetPolys();
-    vtkIdType n = 0;
+    vtkIdType corners = 0;
     const vtkIdType* ids = nullptr;
-    for (triangles->InitTraversal(); triangles->GetNextCell(n, ids);)
+    for (triangles->InitTraversal(); triangles->GetNextCell(corners, ids);)
     {
       // Flying edges' triangles face towards smaller values.
       surface.Triangles.push_back(first + ids[0]);
@@ -181,6 +184,9 @@ private:
   vtkNew<vtkImageData> Image;
   vtkNew<vtkFloatArray> Values;
   vtkNew<vtkFlyingEdges3D> Contour;
+  // Of the vertices of one block, in cells of its spline.
+  ipia::Points<3> Positions, Gradients;
+  Vector F;
 };
 
 /// Joins the parts: vertices on the same edge become one. Returns the component of each vertex.

@@ -157,14 +157,20 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
   }
 
   const double longest = this->Cloud.longestSide();
-  Points<Dim> positions(Dim, this->Cloud.Positions.size());
-  Box<Dim> local = box;
-  for (std::size_t k = 0; k < this->Cloud.Positions.size(); ++k)
+  // Sizes say the spacing, all of them or, on an automatic domain, any.
+  const bool anyGiven = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
+  const bool allGiven = std::all_of(size.begin(), size.end(), [](auto n) { return n > 0; });
+  double wanted = 0;
+  if (!(allGiven || (automatic && anyGiven)))
   {
-    positions.col(static_cast<Eigen::Index>(k)) = place.toLocal(this->Cloud.Positions[k].data());
+    Points<Dim> positions(Dim, this->Cloud.Positions.size());
+    for (std::size_t k = 0; k < this->Cloud.Positions.size(); ++k)
+    {
+      positions.col(static_cast<Eigen::Index>(k)) = place.toLocal(this->Cloud.Positions[k].data());
+    }
+    wanted = (parameters.isClassic() ? ClassicSpacing : HierarchicalSpacing) *
+      pointSpacing(positions, box);
   }
-  const double spacingPerPoint = parameters.isClassic() ? ClassicSpacing : HierarchicalSpacing;
-  const double wanted = spacingPerPoint * pointSpacing(positions, local);
   const double h = std::min(std::max(wanted, longest / MostSpacings), longest / FewestSpacings);
 
   PlacedLattice<Dim> placed;

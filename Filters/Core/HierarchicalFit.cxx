@@ -74,7 +74,7 @@ void reportErrors(
   const Level<Dim>& level, const BrickLattice<Dim>& bricks, int threads, LevelReport& report)
 {
   double sum = 0, count = 0;
-  forValues(level, bricks, level.Points, threads,
+  forValues(level, bricks, level.points(), threads,
     [&](const Sample<Dim>& sample, double f, const Point<Dim>&)
     {
       if (!sample.IsExtra)
@@ -129,7 +129,7 @@ double validatedSmoothing(const std::vector<Level<Dim>>& levels,
     return std::sqrt(sum / static_cast<double>(heldOut.size()));
   };
   const double spacing = levels[last].Grid.Spacing.mean() *
-    std::pow(static_cast<double>(levels.back().Points.size()) / occupiedCells(levels[last]),
+    std::pow(static_cast<double>(levels.back().points().size()) / occupiedCells(levels[last]),
       -1. / (Dim - 1));
   double first = FirstSmoothing * spacing;
   std::deque<double> errors{ errorOf(first), errorOf(first * ValidationStep) };
@@ -190,7 +190,7 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
 
   // The finest level that the points alone determine tells how noisy they are.
   std::size_t gate = levels.size(), next = 0;
-  const auto n = static_cast<double>(levels.back().Points.size());
+  const auto n = static_cast<double>(levels.back().points().size());
   for (std::size_t l = 0; l < levels.size() && options.SmoothingLength < 0; ++l)
   {
     if (n >= PointsPerDeterminedCell * occupiedCells(levels[l]))
@@ -211,7 +211,7 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
       if (next + 1 >= gate)
       {
         missBefore = result.Noise;
-        result.Noise = noiseOf(levels[next], bricks[next], levels.back().Points, threads);
+        result.Noise = noiseOf(levels[next], bricks[next], levels.back().points(), threads);
       }
     }
     if (result.Noise > NoiseGate * levels[gate].Grid.Spacing.mean() &&

@@ -44,8 +44,7 @@ HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bric
     {
       brick[a] = cell[a] / BrickWidth;
       row.Cell |= static_cast<std::int32_t>(cell[a] % BrickWidth) << (2 * a);
-      row.T[a] = static_cast<float>(
-        std::ldexp(sample.Position[a], -level.Coarsening) - static_cast<double>(cell[a]));
+      row.T[a] = static_cast<float>(level.cells(sample.Position[a]) - static_cast<double>(cell[a]));
       row.Slope[a] = static_cast<float>(level.Grid.Spacing[a] * sample.Normal[a]);
     }
     row.Value = sample.Value;
@@ -268,7 +267,10 @@ std::vector<Level<Dim>> makeLevels(
     if (coarsening == 0)
     {
       level.Data = cluster(points, 0);
-      level.Points = std::move(points);
+      if (level.Data.size() < points.size())
+      {
+        level.Unclustered = std::move(points);
+      }
     }
     else
     {

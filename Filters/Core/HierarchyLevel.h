@@ -68,15 +68,25 @@ struct Level
   Lattice<Dim> Grid;
   bool Dense;
   Samples<Dim> Data;
-  Samples<Dim> Points; ///< on the finest level: what its clusters stand for
+  Samples<Dim> Unclustered; ///< on the finest level: what Data stand for; empty if Data are these
+
+  const Samples<Dim>& points() const
+  {
+    return this->Unclustered.empty() ? this->Data : this->Unclustered;
+  }
+
+  /// A length in cells of this level, from cells of the finest.
+  double cells(double length) const
+  {
+    return length / static_cast<double>(std::int64_t{ 1 } << this->Coarsening);
+  }
 
   Index<Dim> cellOf(const Sample<Dim>& sample) const
   {
     Index<Dim> cell;
     for (int a = 0; a < Dim; ++a)
     {
-      const auto at =
-        static_cast<std::int64_t>(std::floor(std::ldexp(sample.Position[a], -this->Coarsening)));
+      const auto at = static_cast<std::int64_t>(std::floor(this->cells(sample.Position[a])));
       cell[a] = std::min(std::max<std::int64_t>(at, 0), this->Grid.cells(a) - 1);
     }
     return cell;

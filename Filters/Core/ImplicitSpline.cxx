@@ -469,16 +469,16 @@ struct SampleKernel
     }
   }
 };
-}
 
+/// The nearest point of the domain.
 template <int Dim>
-struct ImplicitSpline<Dim>::Nearest
+struct Nearest
 {
   std::array<AxisLocation, Dim> At;
   std::int64_t Box;
   Point<Dim> Away; ///< from the nearest point of the domain to the position
 
-  Nearest(const Lattice<Dim>& lattice, const Point<Dim>& position)
+  IPIA_INLINE Nearest(const Lattice<Dim>& lattice, const Point<Dim>& position)
   {
     Index<Dim> box;
     for (int a = 0; a < Dim; ++a)
@@ -494,18 +494,10 @@ struct ImplicitSpline<Dim>::Nearest
   }
 };
 
+/// sum_i c_i B_i, and its gradient unless nullptr.
 template <int Dim>
-ImplicitSpline<Dim>::ImplicitSpline(
-  const Lattice<Dim>& lattice, Vector coefficients, FarField farField)
-  : ControlLattice(lattice)
-  , Coefficients(std::move(coefficients))
-  , Far(std::move(farField))
-{
-}
-
-template <int Dim>
-double ImplicitSpline<Dim>::splineSum(
-  const std::array<AxisLocation, Dim>& at, Point<Dim>* gradient) const
+IPIA_INLINE double sumAt(const Lattice<Dim>& lattice, const double* coefficients,
+  const std::array<AxisLocation, Dim>& at, Point<Dim>* gradient)
 {
   std::array<BasisValues, 3> w = { BasisValues{ 1 }, BasisValues{ 1 }, BasisValues{ 1 } };
   std::array<BasisValues, 3> d{};
@@ -521,8 +513,8 @@ double ImplicitSpline<Dim>::splineSum(
     cell[i] = at[i].Cell;
   }
   // Sums along z and y first, one lane per coefficient along x.
-  const auto& size = this->ControlLattice.Size;
-  const double* base = this->Coefficients.data() + this->ControlLattice.coefficientIndex(cell);
+  const auto& size = lattice.Size;
+  const double* base = coefficients + lattice.coefficientIndex(cell);
   Vector4 f{}, fy{}, fz{};
   for (std::size_t k = 0; k < (Dim == 3 ? Order : 1); ++k)
   {
@@ -544,7 +536,7 @@ double ImplicitSpline<Dim>::splineSum(
   { return x[0] * v[0] + x[1] * v[1] + x[2] * v[2] + x[3] * v[3]; };
   if (gradient)
   {
-    const Point<Dim>& h = this->ControlLattice.Spacing;
+    const Point<Dim>& h = lattice.Spacing;
     (*gradient)[0] = alongX(d[0], f) / h[0];
     (*gradient)[1] = alongX(w[0], fy) / h[1];
     if (Dim == 3)
@@ -555,13 +547,53 @@ double ImplicitSpline<Dim>::splineSum(
   return alongX(w[0], f);
 }
 
+/// f at a position anywhere, and its gradient unless nullptr.
+template <int Dim>
+IPIA_INLINE double evaluateAt(const Lattice<Dim>& lattice, const double* coefficients,
+  const FarField& farField, const Point<Dim>& position, Point<Dim>* gradient)
+{
+  const Nearest<Dim> nearest(lattice, position);
+  const double constant = farField.Sign.empty() ? 0.0 : farField.value(nearest.Box);
+  if (gradient)
+  {
+    gradient->setZero();
+  }
+  const double f =
+    constant != 0 ? constant : sumAt<Dim>(lattice, coefficients, nearest.At, gradient);
+  return continueOutside<Dim>(nearest.Away, f, gradient);
+}
+
+template <int Dim>
+struct PointsKernel
+{
+  static IPIA_INLINE void run(const Lattice<Dim>& lattice, const double* coefficients,
+    const FarField& farField, const Points<Dim>& positions, Vector& values, Points<Dim>& gradients)
+  {
+    for (Eigen::Index k = 0; k < positions.cols(); ++k)
+    {
+      const Point<Dim> x = positions.col(k);
+      Point<Dim> g;
+      values[k] = evaluateAt<Dim>(lattice, coefficients, farField, x, &g);
+      gradients.col(k) = g;
+    }
+  }
+};
+}
+
+template <int Dim>
+ImplicitSpline<Dim>::ImplicitSpline(
+  const Lattice<Dim>& lattice, Vector coefficients, FarField farField)
+  : ControlLattice(lattice)
+  , Coefficients(std::move(coefficients))
+  , Far(std::move(farField))
+{
+}
+
 template <int Dim>
 double ImplicitSpline<Dim>::value(const Point<Dim>& position) const
 {
-  const Nearest nearest(this->ControlLattice, position);
-  const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Box) != 0;
-  const double f = far ? this->Far.value(nearest.Box) : this->splineSum(nearest.At, nullptr);
-  return continueOutside<Dim>(nearest.Away, f, nullptr);
+  return evaluateAt<Dim>(
+    this->ControlLattice, this->Coefficients.data(), this->Far, position, nullptr);
 }
 
 template <int Dim>
@@ -575,11 +607,18 @@ Point<Dim> ImplicitSpline<Dim>::gradient(const Point<Dim>& position) const
 template <int Dim>
 double ImplicitSpline<Dim>::valueAndGradient(const Point<Dim>& position, Point<Dim>& gradient) const
 {
-  const Nearest nearest(this->ControlLattice, position);
-  const bool far = !this->Far.Sign.empty() && this->Far.value(nearest.Box) != 0;
-  gradient.setZero();
-  const double f = far ? this->Far.value(nearest.Box) : this->splineSum(nearest.At, &gradient);
-  return continueOutside<Dim>(nearest.Away, f, &gradient);
+  return evaluateAt<Dim>(
+    this->ControlLattice, this->Coefficients.data(), this->Far, position, &gradient);
+}
+
+template <int Dim>
+void ImplicitSpline<Dim>::valuesAndGradients(
+  const Points<Dim>& positions, Vector& values, Points<Dim>& gradients) const
+{
+  values.resize(positions.cols());
+  gradients.resize(Dim, positions.cols());
+  dispatch<PointsKernel<Dim>>(
+    this->ControlLattice, this->Coefficients.data(), this->Far, positions, values, gradients);
 }
 
 template <int Dim>

@@ -43,6 +43,10 @@ public:
   /// Both at once; returns f.
   double valueAndGradient(const Point<Dim>& position, Point<Dim>& gradient) const;
 
+  /// The same at many positions, one a column, with the best instructions that the machine has.
+  void valuesAndGradients(
+    const Points<Dim>& positions, Vector& values, Points<Dim>& gradients) const;
+
   /**
    * f on a grid inside the domain, x fastest.
    *
@@ -58,10 +62,6 @@ public:
     int derivativeAxis = -1, const ProgressCallback& progress = {}) const;
 
 private:
-  struct Nearest; // the nearest point of the domain and how far it is
-
-  double splineSum(const std::array<AxisLocation, Dim>& at, Point<Dim>* gradient) const;
-
   Lattice<Dim> ControlLattice;
   Vector Coefficients;
   FarField Far;

@@ -96,14 +96,20 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
 template <int Dim>
 Samples<Dim> cluster(const Samples<Dim>& samples, int halvings)
 {
-  Samples<Dim> clusters;
   const int shift = Dim * halvings;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k)
+  {
+    count += k == 0 || samples[k].Key >> shift != samples[k - 1].Key >> shift;
+  }
+  Samples<Dim> clusters;
+  clusters.reserve(count);
   for (std::size_t k = 0; k < samples.size();)
   {
     Sample<Dim> mean = samples[k];
     std::size_t end = k;
     Point<Dim> position = Point<Dim>::Zero(), plain = position, normal = position;
-    double count = 0, weight = 0, value = 0, fairing = 0;
+    double members = 0, weight = 0, value = 0, fairing = 0;
     mean.HasNormal = false;
     for (; end < samples.size() && samples[end].Key >> shift == samples[k].Key >> shift; ++end)
     {
@@ -116,12 +122,12 @@ Samples<Dim> cluster(const Samples<Dim>& samples, int halvings)
       weight += w;
       mean.HasNormal = mean.HasNormal || s.HasNormal;
       plain += s.Position;
-      ++count;
+      ++members;
     }
     if (end > k + 1)
     {
       mean.Weight = static_cast<float>(weight);
-      mean.Position = weight > 0 ? Point<Dim>(position / weight) : Point<Dim>(plain / count);
+      mean.Position = weight > 0 ? Point<Dim>(position / weight) : Point<Dim>(plain / members);
       const double share = weight > 0 ? 1 / weight : 0.0;
       mean.Normal = share * normal;
       mean.Value = static_cast<float>(share * value);

@@ -356,6 +356,32 @@ TYPED_TEST(ImplicitSplineTest, TheContinuationKeepsTheSignAndIsContinuous)
   }
 }
 
+TYPED_TEST(ImplicitSplineTest, ManyPositionsAreEvaluatedAsOneIs)
+{
+  constexpr int Dim = TypeParam::value;
+  for (const ImplicitSpline<Dim>& spline : { randomSpline<Dim>(), splineWithFarField<Dim>() })
+  {
+    ipia::test::Random random(17);
+    Points<Dim> positions(Dim, 500), gradients;
+    for (Eigen::Index k = 0; k < positions.cols(); ++k)
+    {
+      for (int a = 0; a < Dim; ++a)
+      {
+        positions(a, k) = random.uniform(-0.1, 1.1) * spline.lattice().extent(a);
+      }
+    }
+    Vector values;
+    spline.valuesAndGradients(positions, values, gradients);
+    ASSERT_EQ(values.size(), positions.cols());
+    for (Eigen::Index k = 0; k < positions.cols(); ++k)
+    {
+      Point<Dim> g;
+      EXPECT_NEAR(values[k], spline.valueAndGradient(positions.col(k), g), 1e-12);
+      EXPECT_LE((gradients.col(k) - g).norm(), 1e-11 * (1 + g.norm()));
+    }
+  }
+}
+
 TYPED_TEST(ImplicitSplineTest, TheGradientPointsAwayFromAFarFieldAtTheBorder)
 {
   constexpr int Dim = TypeParam::value;
