@@ -4,8 +4,8 @@
  * @brief   fit an implicit B-spline function to oriented points by I-PIA
  *
  * vtkIPIAImplicitFitter turns points with oriented normals into a function f whose zero set is the
- * surface (3-D) or curve (2-D) through the points, sampled as a vtkImageData. A contour filter
- * makes the surface:
+ * surface (3-D) or curve (2-D) through the points, sampled as a vtkImageData. Who wants the surface
+ * itself takes vtkIPIASurfaceReconstruction; a contour filter makes it from the image:
  *
  * @code
  *   vtkNew<vtkIPIAImplicitFitter> fitter;
@@ -20,9 +20,18 @@
  *
  * ### Method
  * f(x) = sum_i C_i B_i(x) is a tensor-product cubic B-spline on a uniform lattice. Each point p_k
- * with unit normal n_k and weight w_k gives rows of a linear least-squares problem: f(p_k) = 0, and
- * offset rows f(p_k + sigma n_k) = epsilon and f(p_k - sigma n_k) = -epsilon (NormalConstraint).
- * With B the collocation matrix of the rows, implicit progressive-iterative approximation takes
+ * with unit normal n_k and weight w_k gives rows of a linear least-squares problem, f(p_k) = 0 and
+ * those of the normal (NormalConstraint).
+ *
+ * By default the lattice is the finest of a hierarchy, each of half the spacing of the one before.
+ * With gradient rows, grad f(p_k) = n_k, and a fairing energy each level is solved by conjugate
+ * gradients from the exact knot refinement of the level before: coarse levels everywhere, so that f
+ * has the right sign far from the data and across holes, fine ones in a band around the data. Noise
+ * is found and smoothed by cross-validation. Documentation/Method.md has the equations.
+ *
+ * On a single level (NumberOfLevels 1) with offset rows, f(p_k + sigma n_k) = epsilon and on
+ * request f(p_k - sigma n_k) = -epsilon, the fit is the paper's. With B the collocation matrix of
+ * the rows, implicit progressive-iterative approximation takes
  *
  *     C <- C + mu B^T W (b - B C),   C = 0 at first,   mu = 2 / max_i sum_k w_k B_i(x_k)
  *
@@ -34,12 +43,12 @@
  * data f approximates signed distance in world units as long as OffsetValue is 0.
  *
  * ### Far field
- * Where no row touches a coefficient it stays 0, and contour filters would draw a second sheet
- * along the inner side of the data; ripples beside the data would become bubbles. The sign of f
- * therefore holds only where data vouch for it: just outside and just inside the points, and
- * wherever these lead through supported places without a change of sign. Every connected region of
- * other places takes a constant, the OffsetValue used, with the sign of what is around it, where
- * f has the other sign or no support.
+ * On a single level, where no row touches a coefficient it stays 0, and contour filters would draw
+ * a second sheet along the inner side of the data; ripples beside the data would become bubbles.
+ * The sign of f therefore holds only where data vouch for it: just outside and just inside the
+ * points, and wherever these lead through supported places without a change of sign. Every
+ * connected region of other places takes a constant, the OffsetValue used, with the sign of what is
+ * around it, where f has the other sign or no support.
  *
  * Places are boxes of half a knot spacing about the knots and the middles between them, on which
  * the default samples lie. Supported are those where sum_i B_i sum_c B_i(x_c), over the centres
@@ -79,10 +88,10 @@
  * ### Errors
  * Refused with one error and empty outputs: no points, one point, all points equal or (in 3-D) on a
  * line, no or only zero normals, grid sizes below 4, sample dimensions below 2, bounds that are
- * empty or hold no point, a step size that diverges, and sizes that the machine's memory would not
- * hold. Left out with one warning that counts them: non-finite points, weights or extra rows, zero
- * or non-finite normals (their rows), points outside ModelBounds. An abort leaves empty
- * outputs.
+ * empty or hold no point, parameters that exclude each other, a step size that diverges, and sizes
+ * that the machine's memory would not hold. Left out with one warning that counts them: non-finite
+ * points, weights or extra rows, zero or non-finite normals (their rows), points outside
+ * ModelBounds. An abort leaves empty outputs.
  *
  * ### Threads and reproducibility
  * The fit runs on OpenMP threads (OMP_NUM_THREADS). Results do not depend on their number, bit for
@@ -91,8 +100,8 @@
  * Y. F. Hamza, H. Lin, Z. Li: Implicit progressive-iterative approximation for curve and surface
  * reconstruction. Computer Aided Geometric Design 77, 2020.
  *
- * @sa vtkIPIAImplicitFunction vtkFlyingEdges3D vtkFlyingEdges2D vtkContourFilter
- * vtkPCANormalEstimation vtkSignedDistance
+ * @sa vtkIPIASurfaceReconstruction vtkIPIAImplicitFunction vtkFlyingEdges3D vtkFlyingEdges2D
+ * vtkContourFilter vtkPCANormalEstimation vtkSignedDistance
  */
 #ifndef vtkIPIAImplicitFitter_h
 #define vtkIPIAImplicitFitter_h
@@ -150,9 +159,10 @@ public:
   ///@{
   /**
    * Control coefficients N per axis ("grid size" in the papers), each >= 4, or 0: derived. If all
-   * are 0 (the default) the knot spacing is 1.6 times the point spacing, with at most 256 spacings
-   * along the longest side. In an automatic domain the spacing is the same on all axes and the
-   * upper end grows to a whole number of them; ModelBounds are kept exactly.
+   * are 0 (the default) the knot spacing is 0.85 times the point spacing, 1.6 times on a single
+   * level with offset rows, with at most 256 spacings along the longest side. In an automatic
+   * domain the spacing is the same on all axes and the upper end grows to a whole number of them;
+   * ModelBounds are kept exactly.
    */
   vtkSetVector3Macro(GridSize, int);
   vtkGetVector3Macro(GridSize, int);
@@ -227,7 +237,7 @@ public:
    * Weight tau of the fairing energy of levels finer than 32 cells, tau sum |D^r c|^2 over
    * differences of neighbouring coefficients, where the rows of an occupied cell weigh about 1 in
    * all: the energy tau h^(2 r - dimension) integral |D^r f|^2. 0: none; -1 (the default):
-   * automatic, 1e-4, and more on noisy data, by cross-validation.
+   * automatic, 5e-5, and more on noisy data, by cross-validation.
    */
   vtkSetClampMacro(FairingWeight, double, -1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(FairingWeight, double);

@@ -16,8 +16,8 @@
  * It is obtained from a fitter (vtkIPIAImplicitFitter::GetImplicitFunction()) or built from a
  * control lattice, output 2 of the fitter, so that a fit can be written as .vti and read back.
  *
- * - Where no data supports the spline, f is a constant of the sign of that region (the far field,
- * see vtkIPIAImplicitFitter); its gradient there is 0.
+ * - Where a fit on a single level has no data, f is a constant of the sign of that region (the far
+ *   field, see vtkIPIAImplicitFitter); its gradient there is 0.
  * - Outside the domain f is continued from the nearest point x' of the domain with the sign kept:
  *   f(x') + |x - x'| where f(x') >= 0, and f(x') - |x - x'| elsewhere.
  * - A function of a planar fit (2-D) ignores the coordinate across its plane.

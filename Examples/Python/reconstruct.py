@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""From a file of points to a surface: reads, fits with nothing set, contours, measures, draws.
+"""From a file of points to a surface, or in the plane a curve, with nothing set.
 
     python3 reconstruct.py scan.ply --output ipia-output
 
-writes surface.ply, surface.vtp, f.vti and picture.png there. Where there is no display, which the
-picture needs, the script runs itself under xvfb-run, if that is installed.
+reads, reconstructs, measures and draws, and writes surface.vtp, surface.ply (single precision, no
+normals), f.vti and picture.png there. Where there is no display, which the picture needs, the script runs
+itself under xvfb-run, if that is installed.
 """
 import argparse
 import contextlib
@@ -17,20 +18,18 @@ import tempfile
 import time
 
 import numpy as np
-from ipia import vtkIPIAImplicitFitter
+from ipia import vtkIPIASurfaceReconstruction
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import (
     vtkFeatureEdges,
-    vtkFlyingEdges2D,
-    vtkFlyingEdges3D,
     vtkImplicitPolyDataDistance,
     vtkPolyDataConnectivityFilter,
     vtkPolyDataNormals,
-    vtkReverseSense,
 )
 from vtkmodules.vtkFiltersPoints import vtkPCANormalEstimation
+from vtkmodules.vtkImagingHybrid import vtkSampleFunction
 from vtkmodules.vtkIOGeometry import vtkOBJReader
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOPLY import vtkPLYReader, vtkPLYWriter
@@ -43,6 +42,7 @@ SUFFIXES = tuple(READERS) + TEXT_SUFFIXES
 PICTURE = (1600, 800)  # pixels
 NEIGHBOURS = 16  # of a point, from which its normal is estimated
 MOST_MEASURED = 100_000  # points whose distance to the surface is measured one by one
+MOST_SAMPLES = 4_000_000  # of f in f.vti, evaluated one by one
 
 
 class UserError(Exception):
@@ -282,41 +282,41 @@ def number_of_components(surface):
     return components.GetNumberOfExtractedRegions()
 
 
-def contour(image):
-    """The zero set of f as a surface (or, of a planar fit, a curve) that faces outward.
+def sampler(fitter):
+    """The fitted function as an image, sampled at its knots or as finely as MOST_SAMPLES allows."""
+    spacings = np.maximum(np.array(fitter.GetGridSizeUsed()) - 3, 0)  # 0 across a plane
+    shrink = min(1.0, (MOST_SAMPLES / np.prod(spacings + 1.0)) ** (1 / np.count_nonzero(spacings)))
+    sample = vtkSampleFunction()
+    sample.SetImplicitFunction(fitter.GetImplicitFunction())
+    sample.SetModelBounds(fitter.GetModelBoundsUsed())
+    sample.SetSampleDimensions(*(int(n * shrink) + 1 for n in spacings))
+    sample.SetOutputScalarTypeToFloat()
+    sample.SetScalarArrayName("f")
+    sample.ComputeNormalsOff()
+    return sample
 
-    The contour filters write single precision points. They work near the origin here and the result
-    is moved back in double precision, so that points far from it (map coordinates) keep their
-    digits.
-    """
-    origin = image.GetOrigin()
-    local = vtkImageData()
-    local.ShallowCopy(image)
-    local.SetOrigin(0, 0, 0)
-    planar = 1 in image.GetDimensions()
-    edges = vtkFlyingEdges2D() if planar else vtkFlyingEdges3D()
-    edges.SetInputData(local)
-    edges.SetValue(0, 0.0)
-    # Flying edges turn triangles and normals to the lower side; outward is the higher one.
-    outward = vtkReverseSense()
-    outward.SetInputConnection(edges.GetOutputPort())
-    outward.ReverseCellsOn()
-    outward.ReverseNormalsOn()
-    outward.Update()
-    if outward.GetOutput().GetNumberOfPoints() == 0:
-        raise UserError("the fit has no surface in its domain; do the normals point to all sides?")
-    return moved(outward.GetOutput(), origin)
+
+def picked(points):
+    """At most MOST_MEASURED of them, evenly."""
+    if len(points) <= MOST_MEASURED:
+        return points
+    return points[np.linspace(0, len(points) - 1, MOST_MEASURED).astype(int)]
 
 
 def distances(points, surface):
-    """True distances of the points (at most MOST_MEASURED of them, evenly picked) to the surface."""
-    if len(points) > MOST_MEASURED:
-        points = points[np.linspace(0, len(points) - 1, MOST_MEASURED).astype(int)]
+    """True distances of the points to the triangles."""
     measure = vtkImplicitPolyDataDistance()
     measure.SetInput(surface)
     values = numpy_to_vtk(np.zeros(len(points)), deep=True)
     measure.FunctionValue(numpy_to_vtk(np.ascontiguousarray(points), deep=True), values)
     return np.abs(vtk_to_numpy(values))
+
+
+def distances_by_function(points, function):
+    """Distances of the points to f = 0 to first order, |f| / |grad f|."""
+    values = np.array([function.FunctionValue(point) for point in points])
+    slopes = np.linalg.norm([function.FunctionGradient(point) for point in points], axis=1)
+    return np.abs(values) / np.where(slopes > 0, slopes, 1)
 
 
 def write(writer, data, path, binary=True):
@@ -387,6 +387,7 @@ def draw(data, surface, path):
         look.SetColor(colour)
         look.SetPointSize(3 if data.GetNumberOfPoints() > 20_000 else 5)
         look.SetLineWidth(5)
+        look.SetLighting(part.GetNumberOfLines() == 0)
         look.SetSpecular(0.15)
         look.SetSpecularPower(20)
         renderer = vtkRenderer()
@@ -438,6 +439,10 @@ def view(points, sides):
     return camera
 
 
+def times(numbers):
+    return " x ".join(str(n) for n in numbers)
+
+
 def summary(name, values, diagonal):
     """Mean, 99 % and maximum, in world units and in per cent of the diagonal."""
     figures = (np.mean(values), np.percentile(values, 99), np.max(values))
@@ -455,20 +460,24 @@ def reconstruct(path, folder, picture):
         data, how = with_normals(data)
     print(f"  {data.GetNumberOfPoints():,} points; normals {how}")
 
-    fitter = vtkIPIAImplicitFitter()
-    fitter.SetInputData(data)
-    with Stage("fit", fitter) as stage:
-        fitter.Update()
+    reconstruction = vtkIPIASurfaceReconstruction()
+    reconstruction.SetInputData(data)
+    with Stage("surface", reconstruction) as stage:
+        reconstruction.Update()
         if stage.errors:
             raise UserError(stage.errors[0])
-    with Stage("contour"):
-        surface = contour(fitter.GetOutput())
+    surface, fitter = reconstruction.GetOutput(), reconstruction.GetFitter()
+    if surface.GetNumberOfPoints() == 0:
+        raise UserError("the fit has no surface in its domain; do the normals point to all sides?")
+    function = sampler(fitter)
+    with Stage("sample f", function):
+        function.Update()
 
     with Stage("measure"):
-        fitted = fitter.GetOutputDataObject(1)
-        points = vtk_to_numpy(fitted.GetPoints().GetData()).astype(float)
+        points = vtk_to_numpy(data.GetPoints().GetData())
+        points = picked(points[np.isfinite(points).all(axis=1)])
         diagonal = np.linalg.norm(np.ptp(points, axis=0))
-        by_function = np.abs(vtk_to_numpy(fitted.GetPointData().GetArray("Distance")))
+        by_function = distances_by_function(points, fitter.GetImplicitFunction())
         by_faces = distances(points, surface) if surface.GetNumberOfPolys() else None
         components = number_of_components(surface)
 
@@ -484,22 +493,27 @@ def reconstruct(path, folder, picture):
     with Stage("write"):
         write(vtkXMLPolyDataWriter(), surface, files["surface"])
         write(vtkPLYWriter(), surface, files["also"])
-        write(vtkXMLImageDataWriter(), fitter.GetOutput(), files["function"])
+        write(vtkXMLImageDataWriter(), function.GetOutput(), files["function"])
     if picture:
         files["picture"] = os.path.join(folder, "picture.png")
         with Stage("draw"):
             draw(data, surface, files["picture"])
 
-    size, samples = fitter.GetGridSizeUsed(), fitter.GetOutput().GetDimensions()
-    print(f"\nlattice {size[0]} x {size[1]} x {size[2]} coefficients, ", end="")
-    print(f"f sampled at {samples[0]} x {samples[1]} x {samples[2]} points")
+    size, samples = fitter.GetGridSizeUsed(), function.GetOutput().GetDimensions()
+    print(f"\nlattice {times(size)} coefficients, {fitter.GetNumberOfLevelsUsed()} levels; ", end="")
+    print(f"f.vti {times(samples)} samples")
+    if fitter.GetSmoothingLengthUsed() > 0:
+        print(f"noise of {fitter.GetNoiseFound():.4g} found, ", end="")
+        print(f"smoothed below a length of {fitter.GetSmoothingLengthUsed():.4g}")
     if by_faces is None:
-        print(f"curve of {surface.GetNumberOfLines():,} segments, ", end="")
+        print(f"curve of {surface.GetNumberOfPoints():,} points, ", end="")
     else:
         edges = number_of_open_edges(surface)
         closed = "closed" if edges == 0 else f"{edges} open edges, where it meets the domain's sides"
         print(f"surface of {surface.GetNumberOfPolys():,} triangles, {closed}, ", end="")
-    print(f"{components} component{'s' if components != 1 else ''}")
+    print(f"{components} component{'s' if components != 1 else ''}", end="")
+    left_out = reconstruction.GetNumberOfComponentsLeftOut()
+    print(f" ({left_out} without data left out)" if left_out else "")
     print(f"distance of the points  {'mean':>13}{'99 %':>20}{'max':>20}   (% of the diagonal)")
     if by_faces is not None:
         print(summary("to the triangles", by_faces, diagonal))

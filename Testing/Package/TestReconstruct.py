@@ -5,6 +5,7 @@ TestReconstruct.py <path of reconstruct.py>
 """
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -66,12 +67,15 @@ class TestReconstruct(unittest.TestCase):
             check=False,
         )
 
-    def volume(self):
-        """Of surface.vtp; positive where triangles face outward."""
+    def surface(self):
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(self.path("out/surface.vtp"))
         reader.Update()
-        surface = reader.GetOutput()
+        return reader.GetOutput()
+
+    def volume(self):
+        """Of surface.vtp; positive where triangles face outward."""
+        surface = self.surface()
         x = vtk_to_numpy(surface.GetPoints().GetData())
         x = x - x.mean(axis=0)
         corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
@@ -104,6 +108,12 @@ class TestReconstruct(unittest.TestCase):
         f = vtk_to_numpy(image.GetOutput().GetPointData().GetArray("f"))
         self.assertLess(f.min(), 0)
         self.assertGreater(f[0], 0)
+        # f.vti is signed distance near the sphere, at its own samples.
+        samples = image.GetOutput()
+        distances = np.linalg.norm([samples.GetPoint(i) for i in range(len(f))], axis=1) - RADIUS
+        near = np.abs(distances) < 0.05
+        self.assertGreater(near.sum(), 100)
+        np.testing.assert_allclose(f[near], distances[near], atol=0.005)
         ply = vtkPLYReader()
         ply.SetFileName(self.path("out/surface.ply"))
         ply.Update()
@@ -119,6 +129,34 @@ class TestReconstruct(unittest.TestCase):
         warm = columns[:, :, 0] > columns[:, :, 2] + 30
         self.assertGreater(warm[:, 1150:1250].mean(), 0.99)
         self.assertEqual(warm[:, :800].mean(), 0)
+
+    def test_curves_across_every_axis(self):
+        angle = 2 * np.pi * np.arange(300) / 300
+        circle = np.stack((np.cos(angle), np.sin(angle)), axis=1)
+        for across in range(3):
+            with self.subTest(across):
+                normals = np.insert(circle, across, 0, axis=1)
+                points = np.insert(RADIUS * circle, across, 5, axis=1)
+                path = self.file("curve.xyz", np.hstack((points, normals)))
+                result = self.run_script(path, "--no-picture")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertIn("points, 1 component\n", result.stdout)
+                curve = vtk_to_numpy(self.surface().GetPoints().GetData())
+                np.testing.assert_allclose(curve[:, across], 5, atol=1e-6)
+                radii = np.linalg.norm(np.delete(curve, across, axis=1), axis=1)
+                np.testing.assert_allclose(radii, RADIUS, rtol=1e-4)
+
+    def test_noise_is_told(self):
+        points, normals = sphere(8000)
+        random = np.random.default_rng(1)
+        points = points + random.normal(0, 0.02, points.shape)
+        path = self.file("noisy.xyz", np.hstack((points, normals)))
+        result = self.run_script(path, "--no-picture")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        noise = re.search(r"noise of (\S+) found, smoothed below a length of \S+", result.stdout)
+        self.assertIsNotNone(noise, result.stdout)
+        self.assertAlmostEqual(float(noise[1]), 0.02, delta=0.004)
+        self.assert_is_sphere()
 
     def test_distances_are_those_of_the_points(self):
         surface = vtkSphereSource()

@@ -22,9 +22,6 @@ PLANAR_SAMPLES_PER_SPACING = 8
 # Offset positions outside the domain are left out, so this leaves out all rows of the normals.
 NO_OFFSET_ROWS = 100 * DOMAIN_HALF_SIDE
 
-# Points whose cells the far field has replaced have |f| = the offset distance, to rounding.
-FAR_FIELD_SLACK = 1e-6
-
 
 @dataclass(frozen=True)
 class Settings:
@@ -52,8 +49,6 @@ class Fit:
     seconds: float
     max_error: float
     offset_distance: float
-    points_in_far_field: int
-    max_error_elsewhere: float
     warnings: tuple
 
 
@@ -76,13 +71,9 @@ def fit(cloud, settings, extra_rows=None):
     if messages["ErrorEvent"]:
         raise RuntimeError(messages["ErrorEvent"][0])
     contour = _contour(fitter, settings.planar)
-    residuals = _residuals(fitter)
-    far = residuals > _far_field_magnitude(fitter) * (1 - FAR_FIELD_SLACK)
     return Fit(contour=contour, components=_component_count(contour),
                closed=_is_closed(contour, settings.planar), seconds=seconds,
                max_error=fitter.GetMaximumError(), offset_distance=fitter.GetOffsetDistanceUsed(),
-               points_in_far_field=int(far.sum()),
-               max_error_elsewhere=float(residuals[~far].max(initial=0.0)),
                warnings=tuple(messages["WarningEvent"]))
 
 
@@ -124,14 +115,6 @@ def _contour(fitter, planar):
     contour.SetValue(0, 0.0)
     contour.Update()
     return contour.GetOutput()
-
-
-def _residuals(fitter):
-    return np.abs(vtk_to_numpy(fitter.GetOutputDataObject(1).GetPointData().GetArray("Residual")))
-
-
-def _far_field_magnitude(fitter):
-    return fitter.GetOffsetValue() or fitter.GetOffsetDistanceUsed()
 
 
 def _component_count(contour):

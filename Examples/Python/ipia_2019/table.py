@@ -21,19 +21,9 @@ def table_lines(lab):
 def _row(lab, model):
     made = lab.standard_fit(model.name)
     settings = lab.library.settings(model.name)
-    _note_far_field_points(lab, model, made)
     if model.remark:
         lab.note_on_meshes(f"{model.name}: {model.remark}")
     return (model.name, lab.library.source(model.name), str(len(lab.library.cloud(model.name))),
             f"{settings.grid}^{2 if model.planar else 3}", str(ITERATIONS), str(made.components),
             f"{model.paper_error:.3g}", f"{made.max_error:.3g}",
             f"{model.paper_seconds:g}", f"{made.seconds:.2f}")
-
-
-def _note_far_field_points(lab, model, made):
-    if made.points_in_far_field:
-        lab.note(
-            f"{model.name}: {made.points_in_far_field} of {len(lab.library.cloud(model.name))} "
-            "points lie so far from the others that the filter counts their knot cells as without "
-            "data (less than 1/50 of the usual density of rows) and f is the far field's constant "
-            f"there, which is the maximum error; elsewhere it is {made.max_error_elsewhere:.3g}")
