@@ -137,16 +137,7 @@ vtkMTimeType vtkIPIASurfaceReconstruction::GetMTime()
 
 int vtkIPIASurfaceReconstruction::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  if (port == 0)
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  }
-  else
-  {
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  return 1;
+  return this->Fitter->FillInputPortInformation(port, info);
 }
 
 bool vtkIPIASurfaceReconstruction::ReportProgress(double share)

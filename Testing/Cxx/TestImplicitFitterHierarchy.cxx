@@ -22,9 +22,7 @@ struct Setting
   std::function<void(vtkIPIAImplicitFitter*)> Apply;
 };
 
-/// Sizes with the number of levels that they have by themselves, and one more. With fewer levels
-/// the coarsest lattice does not carry the sides of the surface into the whole volume: a known
-/// limit.
+/// Sizes with the number of levels that they have by themselves, down to one and one more.
 std::vector<Setting> Settings()
 {
   std::vector<Setting> settings;
@@ -42,8 +40,10 @@ std::vector<Setting> Settings()
     withSize("", [](auto*) {});
     withSize(", two-sided offsets", [](auto* f) { f->SetNormalConstraintToTwoSidedOffset(); });
     withSize(", outward offsets", [](auto* f) { f->SetNormalConstraintToOutwardOffset(); });
-    withSize(Text(", ", size.second + 1, " levels"),
-      [=](auto* f) { f->SetNumberOfLevels(size.second + 1); });
+    for (int levels = 1; levels <= size.second + 1; ++levels)
+    {
+      withSize(Text(", ", levels, " levels"), [=](auto* f) { f->SetNumberOfLevels(levels); });
+    }
   }
   return settings;
 }
