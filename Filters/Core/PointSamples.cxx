@@ -3,8 +3,6 @@
 
 #include "Parallel.h"
 
-#include <parallel/algorithm>
-
 namespace ipia
 {
 namespace
@@ -41,6 +39,28 @@ std::uint64_t mortonKey(const Index<Dim>& i)
     key |= v << a;
   }
   return key;
+}
+
+/// Sorts a power of two of chunks and merges neighbours until one is left.
+template <typename T>
+void sortOnThreads(std::vector<T>& values, int threads)
+{
+  constexpr std::int64_t chunks = 16;
+  const auto at = [&](std::int64_t chunk)
+  { return values.begin() + static_cast<std::int64_t>(values.size()) * chunk / chunks; };
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::int64_t k = 0; k < chunks; ++k)
+  {
+    std::sort(at(k), at(k + 1));
+  }
+  for (std::int64_t width = 1; width < chunks; width *= 2)
+  {
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (std::int64_t k = 0; k < chunks; k += 2 * width)
+    {
+      std::inplace_merge(at(k), at(k + width), at(k + 2 * width));
+    }
+  }
 }
 
 template <int Dim>
@@ -104,8 +124,7 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
         order[static_cast<std::size_t>(k)] = { mortonKey<Dim>(subCell), k };
       }
     });
-  __gnu_parallel::sort(order.begin(), order.end(),
-    __gnu_parallel::parallel_tag(static_cast<__gnu_parallel::_ThreadIndex>(threads)));
+  sortOnThreads(order, threads);
   Samples<Dim> samples(order.size());
   const auto fill = [&](std::size_t at)
   {
