@@ -4,6 +4,7 @@
 #include "Core/Parallel.h"
 #include "IPIABrickContour.h"
 #include "IPIAFitSolution.h"
+#include "IPIAProgress.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFunction.h"
 
@@ -25,7 +26,6 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkVersion.h"
 
 #include <algorithm>
 
@@ -354,16 +354,6 @@ void vtkIPIAImplicitFitter::ResetResults()
   vtkMath::UninitializeBounds(this->ModelBoundsUsed);
 }
 
-bool vtkIPIAImplicitFitter::ReportProgress(double share)
-{
-  this->UpdateProgress(share);
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-  return !this->CheckAbort();
-#else
-  return !this->GetAbortExecute();
-#endif
-}
-
 template <int Dim>
 bool vtkIPIAImplicitFitter::FitInDimension()
 {
@@ -372,7 +362,7 @@ bool vtkIPIAImplicitFitter::FitInDimension()
   const auto progress = [this, &farthest](double share)
   {
     farthest = std::max(farthest, share);
-    return this->ReportProgress(ProgressOfRows + (ProgressOfFit - ProgressOfRows) * farthest);
+    return ipia::reportProgress(this, ProgressOfRows + (ProgressOfFit - ProgressOfRows) * farthest);
   };
   auto& slot = this->State->Slot<Dim>();
   slot = std::make_unique<ipia::FitSolution<Dim>>(
@@ -507,8 +497,8 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
   int finished = 0;
   const auto progress = [&](double share)
   {
-    return this->ReportProgress(
-      ProgressOfFit + (1 - ProgressOfFit) * (finished + share) / quantities);
+    return ipia::reportProgress(
+      this, ProgressOfFit + (1 - ProgressOfFit) * (finished + share) / quantities);
   };
   const auto newArray = [image](const char* name, int components)
   {
@@ -666,7 +656,7 @@ int vtkIPIAImplicitFitter::RequestData(
     vtkErrorMacro(<< problem.Refusal);
     return 1;
   }
-  if (!this->ReportProgress(0))
+  if (!ipia::reportProgress(this, 0))
   {
     this->DiscardFit();
     return 1;
@@ -679,7 +669,7 @@ int vtkIPIAImplicitFitter::RequestData(
   if (this->IsInBricks())
   {
     this->WriteResults(image->GetFieldData());
-    this->ReportProgress(1);
+    ipia::reportProgress(this, 1);
     return 1;
   }
   vtkInformation* imageInfo = output->GetInformationObject(0);
@@ -705,7 +695,7 @@ int vtkIPIAImplicitFitter::RequestData(
   this->WriteResults(image->GetFieldData());
   this->WriteFittedPoints(points);
   lattice->ShallowCopy(this->State->ControlLattice);
-  this->ReportProgress(1);
+  ipia::reportProgress(this, 1);
   return 1;
 }
 

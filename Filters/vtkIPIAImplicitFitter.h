@@ -469,7 +469,6 @@ private:
   bool SampleImage(vtkImageData* image);
   void WriteFittedPoints(vtkPolyData* output);
   void WriteResults(vtkFieldData* field) const;
-  bool ReportProgress(double share);
 
   std::unique_ptr<Internals> State;
 };

@@ -3,6 +3,7 @@
 
 #include "IPIABrickContour.h"
 #include "IPIAComponents.h"
+#include "IPIAProgress.h"
 #include "vtkIPIAImplicitFitter.h"
 #include "vtkIPIAImplicitFunction.h"
 
@@ -23,7 +24,6 @@
 #include "vtkReverseSense.h"
 #include "vtkSMPTools.h"
 #include "vtkStripper.h"
-#include "vtkVersion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -140,21 +140,11 @@ int vtkIPIASurfaceReconstruction::FillInputPortInformation(int port, vtkInformat
   return this->Fitter->FillInputPortInformation(port, info);
 }
 
-bool vtkIPIASurfaceReconstruction::ReportProgress(double share)
-{
-  this->UpdateProgress(share);
-#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-  return !this->CheckAbort();
-#else
-  return !this->GetAbortExecute();
-#endif
-}
-
 void vtkIPIASurfaceReconstruction::ForwardEvent(vtkObject*, unsigned long event, void* data)
 {
   if (event == vtkCommand::ProgressEvent)
   {
-    const bool goOn = this->ReportProgress(ProgressOfFit * *static_cast<double*>(data));
+    const bool goOn = ipia::reportProgress(this, ProgressOfFit * *static_cast<double*>(data));
     this->Fitter->SetAbortExecute(goOn ? 0 : 1);
   }
   else if (this->HasObserver(event))
@@ -196,7 +186,7 @@ int vtkIPIASurfaceReconstruction::RequestData(
   bool done = this->Fitter->GetImplicitFunction()->HasControlLattice();
   std::vector<vtkIdType> component; // of each vertex
   const auto contourProgress = [this](double share)
-  { return this->ReportProgress(ProgressOfFit + (1 - ProgressOfFit) * share); };
+  { return ipia::reportProgress(this, ProgressOfFit + (1 - ProgressOfFit) * share); };
   if (done)
   {
     if (this->Fitter->IsInBricks())
@@ -225,7 +215,7 @@ int vtkIPIASurfaceReconstruction::RequestData(
   {
     this->Fitter->GetOutputDataObject(port)->Initialize();
   }
-  if (!done || !this->ReportProgress(1))
+  if (!done || !ipia::reportProgress(this, 1))
   {
     surface->Initialize();
   }

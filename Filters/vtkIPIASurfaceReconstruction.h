@@ -104,7 +104,6 @@ private:
   vtkIPIASurfaceReconstruction(const vtkIPIASurfaceReconstruction&) = delete;
   void operator=(const vtkIPIASurfaceReconstruction&) = delete;
 
-  bool ReportProgress(double share);
   void ForwardEvent(vtkObject* caller, unsigned long event, void* data);
   double KnotSpacing() const;
   int PointType() const;
