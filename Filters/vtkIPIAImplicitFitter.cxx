@@ -258,9 +258,16 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
 int vtkIPIAImplicitFitter::RequestInformation(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
+  this->BringInputUpToDate(output->GetInformationObject(0));
+  this->AnnounceOutputs(input, output);
+  return 1;
+}
+
+void vtkIPIAImplicitFitter::AnnounceOutputs(
+  vtkInformationVector** input, vtkInformationVector* output)
+{
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* imageInfo = output->GetInformationObject(0);
-  this->BringInputUpToDate(imageInfo);
   this->PrepareProblem(input);
   const ipia::FitProblem& problem = *this->State->Current;
 
@@ -288,7 +295,6 @@ int vtkIPIAImplicitFitter::RequestInformation(
   {
     output->GetInformationObject(port)->Set(Pipeline::TIME_DEPENDENT_INFORMATION(), 1);
   }
-  return 1;
 }
 
 int vtkIPIAImplicitFitter::RequestUpdateExtent(

@@ -406,6 +406,13 @@ protected:
   int RequestData(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
 
+  /// Updates the input, at the time step that outInfo asks for, since bounds and sizes follow from
+  /// the points. Subclasses on several processes ask for their own part of it.
+  virtual void BringInputUpToDate(vtkInformation* outInfo);
+
+  /// The extents, origins and spacings of the images that the points of these inputs will give.
+  void AnnounceOutputs(vtkInformationVector** input, vtkInformationVector* output);
+
   double ModelBounds[6];
   double Padding;
   int GridSize[3];
@@ -458,7 +465,6 @@ private:
 
   ipia::FitParameters Parameters() const;
 
-  void BringInputUpToDate(vtkInformation* outInfo);
   void PrepareProblem(vtkInformationVector** input);
   bool Fit();
   template <int Dim>

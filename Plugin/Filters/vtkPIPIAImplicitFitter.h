@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkPIPIAImplicitFitter
+ * @brief   vtkIPIAImplicitFitter for ParaView: domain as a box, parallel servers
+ *
+ * A vtkIPIAImplicitFitter that ParaView's panel and parallel servers can use.
+ *
+ * ### Domain
+ * UsePointBounds, ModelBoundsOrigin and ModelBoundsLength take the place of ModelBounds: a tick box
+ * and what ParaView's interactive box gives.
+ *
+ * ### Parallel servers
+ * With more than one rank each asks its input for its own part; the points of all are gathered on
+ * the first rank, which fits them and has the whole output, with a warning. The other ranks know the
+ * extents and have empty outputs. The result is that of a single rank; memory and time are not
+ * shared out.
+ *
+ * @sa vtkIPIAImplicitFitter vtkPIPIASurfaceReconstruction
+ */
+#ifndef vtkPIPIAImplicitFitter_h
+#define vtkPIPIAImplicitFitter_h
+
+#include "vtkFiltersIPIAParaViewModule.h" // for the export macro
+#include "vtkIPIAImplicitFitter.h"
+#include "vtkSmartPointer.h" // for the gathered points
+
+class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPIPIAImplicitFitter : public vtkIPIAImplicitFitter
+{
+public:
+  static vtkPIPIAImplicitFitter* New();
+  vtkTypeMacro(vtkPIPIAImplicitFitter, vtkIPIAImplicitFitter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Whether the domain is derived from the points (and Padding); otherwise it is the box below.
+   * Default on.
+   */
+  void SetUsePointBounds(bool use);
+  vtkGetMacro(UsePointBounds, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Lower corner and side lengths of the domain, world units. Default: the unit cube.
+   */
+  void SetModelBoundsOrigin(double x, double y, double z);
+  void SetModelBoundsLength(double x, double y, double z);
+  vtkGetVector3Macro(ModelBoundsOrigin, double);
+  vtkGetVector3Macro(ModelBoundsLength, double);
+  ///@}
+
+  using vtkAlgorithm::SetInputArrayToProcess;
+
+  /// ParaView names an array by the index itself as long as it does not know the arrays of the input,
+  /// as in a script: that means the active normals, or the active scalars of extra rows.
+  void SetInputArrayToProcess(
+    int index, int port, int connection, int association, const char* name) override;
+
+protected:
+  vtkPIPIAImplicitFitter();
+  ~vtkPIPIAImplicitFitter() override;
+
+  void BringInputUpToDate(vtkInformation* outInfo) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+  bool UsePointBounds;
+  double ModelBoundsOrigin[3];
+  double ModelBoundsLength[3];
+
+private:
+  vtkPIPIAImplicitFitter(const vtkPIPIAImplicitFitter&) = delete;
+  void operator=(const vtkPIPIAImplicitFitter&) = delete;
+
+  void ApplyModelBounds();
+
+  vtkSmartPointer<vtkDataObject> GatheredPoints[2]; // of each input port, on the first rank
+  int RanksWithPoints;
+};
+
+#endif

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkPIPIASurfaceReconstruction
+ * @brief   vtkIPIASurfaceReconstruction for ParaView: one panel, parallel servers
+ *
+ * A vtkIPIASurfaceReconstruction whose fitter's parameters are its own, as ParaView's panel needs
+ * them, with the domain given as in vtkPIPIAImplicitFitter.
+ *
+ * With more than one rank the points of all are gathered on the first, which fits them and has the
+ * whole surface, with a warning; the others have none of it.
+ *
+ * @sa vtkIPIASurfaceReconstruction vtkPIPIAImplicitFitter
+ */
+#ifndef vtkPIPIASurfaceReconstruction_h
+#define vtkPIPIASurfaceReconstruction_h
+
+#include "vtkFiltersIPIAParaViewModule.h" // for the export macro
+#include "vtkIPIASurfaceReconstruction.h"
+
+class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPIPIASurfaceReconstruction
+  : public vtkIPIASurfaceReconstruction
+{
+public:
+  static vtkPIPIASurfaceReconstruction* New();
+  vtkTypeMacro(vtkPIPIASurfaceReconstruction, vtkIPIASurfaceReconstruction);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Whether the domain is derived from the points (and Padding); otherwise it is the box below.
+   * Default on.
+   */
+  void SetUsePointBounds(bool use);
+  vtkGetMacro(UsePointBounds, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Lower corner and side lengths of the domain, world units. Default: the unit cube.
+   */
+  void SetModelBoundsOrigin(double x, double y, double z);
+  void SetModelBoundsLength(double x, double y, double z);
+  vtkGetVector3Macro(ModelBoundsOrigin, double);
+  vtkGetVector3Macro(ModelBoundsLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * Parameters of the fitter, see vtkIPIAImplicitFitter.
+   */
+  void SetGridSize(int x, int y, int z);
+  void SetSampleDimensions(int x, int y, int z);
+  void SetPadding(double value);
+  void SetDimension(int value);
+  void SetNormalConstraint(int value);
+  void SetOffsetDistance(double value);
+  void SetOffsetValue(double value);
+  void SetInwardOffsetDistance(double value);
+  void SetInwardOffsetValue(double value);
+  void SetFairingWeight(double value);
+  void SetFairingOrder(int value);
+  void SetSolver(int value);
+  void SetNumberOfLevels(int value);
+  void SetMaximumNumberOfIterations(int value);
+  void SetTolerance(double value);
+  void SetStoppingRule(int value);
+  void SetStepSize(double value);
+  ///@}
+
+  using vtkAlgorithm::SetInputArrayToProcess;
+
+  /// ParaView names an array by the index itself as long as it does not know the arrays of the input,
+  /// as in a script: that means the active normals, or the active scalars of extra rows.
+  void SetInputArrayToProcess(
+    int index, int port, int connection, int association, const char* name) override;
+
+protected:
+  vtkPIPIASurfaceReconstruction();
+  ~vtkPIPIASurfaceReconstruction() override;
+
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+  bool UsePointBounds;
+  double ModelBoundsOrigin[3];
+  double ModelBoundsLength[3];
+
+private:
+  vtkPIPIASurfaceReconstruction(const vtkPIPIASurfaceReconstruction&) = delete;
+  void operator=(const vtkPIPIASurfaceReconstruction&) = delete;
+
+  void ApplyModelBounds();
+};
+
+#endif
