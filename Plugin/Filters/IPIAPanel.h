@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What both filters for ParaView have in common: the domain as a tick box and a box, and the warning
- * of a parallel server.
+ * What both filters for ParaView have in common: the domain as a tick box and a box, the choice of
+ * arrays, and the warning of a parallel server.
  */
 #ifndef IPIAPanel_h
 #define IPIAPanel_h
 
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkIndent.h"
+#include "vtkInformation.h"
 #include "vtkMath.h"
 
 #include <algorithm>
@@ -34,19 +37,69 @@ inline std::array<double, 6> boundsOfBox(
   return bounds;
 }
 
-/// The attribute that an array to process is if ParaView has chosen none, which it tells by the index
-/// in place of a name; -1 if a name was chosen, or for an index without such a default.
-inline int attributeUnlessNamed(int index, const char* name)
+/// The values of extra rows as an array to process.
+constexpr int ExtraValuesIndex = 2, ExtraRowsPort = 1;
+
+/// Takes ParaView's choice of an array to process, and hands it to a filter.
+///
+/// ParaView tells the index in place of a name as long as it has chosen none: that means the active
+/// normals, or the active scalars of extra rows. And ParaView 5.11 crashes where the first array of
+/// an input port has an index above 0: it sees the array of extra rows (index 2 of port 1) only while
+/// the filter works.
+class ChosenArrays
 {
-  constexpr int normals = 0, extraValues = 2;
-  if (!name || std::to_string(index) != name)
+public:
+  /// Whether the choice was taken; if not it is for the superclass.
+  bool Take(vtkAlgorithm* filter, int index, const char* name)
   {
-    return -1;
+    const bool isNamed = name && std::to_string(index) != name;
+    if (index == ExtraValuesIndex)
+    {
+      const std::string chosen = isNamed ? name : "";
+      if (chosen != this->ExtraValues)
+      {
+        this->ExtraValues = chosen;
+        filter->Modified();
+      }
+      return true;
+    }
+    if (index == 0 && !isNamed)
+    {
+      filter->SetInputArrayToProcess(
+        0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
+      return true;
+    }
+    return false;
   }
-  return index == normals  ? vtkDataSetAttributes::NORMALS
-    : index == extraValues ? vtkDataSetAttributes::SCALARS
-                           : -1;
-}
+
+  /// Shows the filter its extra values for as long as this lives.
+  class Shown
+  {
+  public:
+    Shown(const ChosenArrays& chosen, vtkAlgorithm* filter)
+      : Info(filter->GetInputArrayInformation(ExtraValuesIndex))
+    {
+      if (!chosen.ExtraValues.empty())
+      {
+        this->Info->Remove(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
+        this->Info->Set(vtkDataObject::FIELD_NAME(), chosen.ExtraValues.c_str());
+      }
+    }
+    ~Shown()
+    {
+      this->Info->Remove(vtkDataObject::FIELD_NAME());
+      this->Info->Set(vtkDataObject::FIELD_ATTRIBUTE_TYPE(), vtkDataSetAttributes::SCALARS);
+    }
+    Shown(const Shown&) = delete;
+    void operator=(const Shown&) = delete;
+
+  private:
+    vtkInformation* Info;
+  };
+
+private:
+  std::string ExtraValues;
+};
 
 inline void printBox(std::ostream& os, vtkIndent indent, bool usePointBounds,
   const double origin[3], const double length[3])

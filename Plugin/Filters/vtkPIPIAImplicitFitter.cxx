@@ -51,6 +51,7 @@ vtkPIPIAImplicitFitter::vtkPIPIAImplicitFitter()
   : UsePointBounds(true)
   , ModelBoundsOrigin{ 0, 0, 0 }
   , ModelBoundsLength{ 1, 1, 1 }
+  , Chosen(new ipia::ChosenArrays)
   , RanksWithPoints(0)
 {
 }
@@ -87,14 +88,9 @@ void vtkPIPIAImplicitFitter::ApplyModelBounds()
 void vtkPIPIAImplicitFitter::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
-  const int attribute = ipia::attributeUnlessNamed(index, name);
-  if (attribute < 0)
+  if (!this->Chosen->Take(this, index, name))
   {
     this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
-  }
-  else
-  {
-    this->Superclass::SetInputArrayToProcess(index, port, connection, association, attribute);
   }
 }
 
@@ -157,6 +153,13 @@ int vtkPIPIAImplicitFitter::RequestInformation(
       vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
   }
   return 1;
+}
+
+vtkTypeBool vtkPIPIAImplicitFitter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  const ipia::ChosenArrays::Shown shown(*this->Chosen, this);
+  return this->Superclass::ProcessRequest(request, input, output);
 }
 
 int vtkPIPIAImplicitFitter::RequestUpdateExtent(

@@ -24,6 +24,13 @@
 #include "vtkIPIAImplicitFitter.h"
 #include "vtkSmartPointer.h" // for the gathered points
 
+#include <memory> // for std::unique_ptr
+
+namespace ipia
+{
+class ChosenArrays;
+}
+
 class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPIPIAImplicitFitter : public vtkIPIAImplicitFitter
 {
 public:
@@ -52,10 +59,12 @@ public:
 
   using vtkAlgorithm::SetInputArrayToProcess;
 
-  /// ParaView names an array by the index itself as long as it does not know the arrays of the input,
-  /// as in a script: that means the active normals, or the active scalars of extra rows.
+  /// As ParaView names arrays, see ipia::ChosenArrays.
   void SetInputArrayToProcess(
     int index, int port, int connection, int association, const char* name) override;
+
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
 
 protected:
   vtkPIPIAImplicitFitter();
@@ -78,6 +87,8 @@ private:
   void operator=(const vtkPIPIAImplicitFitter&) = delete;
 
   void ApplyModelBounds();
+
+  std::unique_ptr<ipia::ChosenArrays> Chosen;
 
   vtkSmartPointer<vtkDataObject> GatheredPoints[2]; // of each input port, on the first rank
   int RanksWithPoints;

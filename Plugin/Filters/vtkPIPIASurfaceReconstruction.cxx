@@ -20,6 +20,7 @@ vtkPIPIASurfaceReconstruction::vtkPIPIASurfaceReconstruction()
   : UsePointBounds(true)
   , ModelBoundsOrigin{ 0, 0, 0 }
   , ModelBoundsLength{ 1, 1, 1 }
+  , Chosen(new ipia::ChosenArrays)
 {
 }
 
@@ -140,15 +141,17 @@ void vtkPIPIASurfaceReconstruction::SetStepSize(double value)
 void vtkPIPIASurfaceReconstruction::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
-  const int attribute = ipia::attributeUnlessNamed(index, name);
-  if (attribute < 0)
+  if (!this->Chosen->Take(this, index, name))
   {
     this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
   }
-  else
-  {
-    this->Superclass::SetInputArrayToProcess(index, port, connection, association, attribute);
-  }
+}
+
+vtkTypeBool vtkPIPIASurfaceReconstruction::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+{
+  const ipia::ChosenArrays::Shown shown(*this->Chosen, this);
+  return this->Superclass::ProcessRequest(request, input, output);
 }
 
 int vtkPIPIASurfaceReconstruction::RequestUpdateExtent(

@@ -17,6 +17,13 @@
 #include "vtkFiltersIPIAParaViewModule.h" // for the export macro
 #include "vtkIPIASurfaceReconstruction.h"
 
+#include <memory> // for std::unique_ptr
+
+namespace ipia
+{
+class ChosenArrays;
+}
+
 class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPIPIASurfaceReconstruction
   : public vtkIPIASurfaceReconstruction
 {
@@ -69,10 +76,12 @@ public:
 
   using vtkAlgorithm::SetInputArrayToProcess;
 
-  /// ParaView names an array by the index itself as long as it does not know the arrays of the input,
-  /// as in a script: that means the active normals, or the active scalars of extra rows.
+  /// As ParaView names arrays, see ipia::ChosenArrays.
   void SetInputArrayToProcess(
     int index, int port, int connection, int association, const char* name) override;
+
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
 
 protected:
   vtkPIPIASurfaceReconstruction();
@@ -92,6 +101,8 @@ private:
   void operator=(const vtkPIPIASurfaceReconstruction&) = delete;
 
   void ApplyModelBounds();
+
+  std::unique_ptr<ipia::ChosenArrays> Chosen;
 };
 
 #endif

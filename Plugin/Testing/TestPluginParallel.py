@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""pvbatch on several ranks: the same as on one.
+
+TestPluginParallel.py <number of ranks>: 1 writes what others compare with.
+"""
+import json
+import sys
+
+import numpy as np
+from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+import plugin_testing as t
+
+controller = vtkMultiProcessController.GetGlobalController()
+rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
+
+
+def measured(proxy):
+    """Area by ParaView's own integration over all ranks, and points of all ranks."""
+    integral = simple.IntegrateVariables(Input=proxy)
+    integral.UpdatePipeline()
+    area = servermanager.Fetch(integral)
+    found = {"points": proxy.GetDataInformation().GetNumberOfPoints()}
+    if rank == 0:
+        found["area"] = area.GetCellData().GetArray("Area").GetValue(0)
+    return found
+
+
+def expect(condition, what):
+    if not condition:
+        print(f"rank {rank}: {what}", flush=True)
+        controller.GetCommunicator().Abort(1) if hasattr(
+            controller.GetCommunicator(), "Abort") else None
+        sys.exit(1)
+
+
+def main(expected_ranks):
+    expect(ranks == expected_ranks, f"{ranks} ranks")
+    # Its points are spread over the ranks.
+    path = t.output("parallel.vtp")
+    if expected_ranks == 1:
+        t.write("parallel.vtp", t.polydata(*t.kitten()))
+    cloud = simple.XMLPolyDataReader(FileName=[path])
+    spread = simple.RedistributeDataSet(Input=cloud)
+    spread.UpdatePipeline()
+    own = spread.GetClientSideObject().GetOutputDataObject(0)
+    leaves = own.GetNumberOfPoints() if hasattr(own, "GetNumberOfPoints") else -1
+    print(f"rank {rank} has {leaves} points", flush=True)
+    expect(0 < leaves < 5210 or ranks == 1, "the points are not spread")
+
+    results = {}
+    with t.Messages() as messages:
+        surface = simple.IPIASurfaceReconstruction(Input=spread)
+        surface.UpdatePipeline()
+        results["surface"] = measured(surface)
+        fitter = simple.IPIAImplicitFitter(Input=spread)
+        contour = simple.Contour(Input=fitter, ContourBy=["POINTS", "f"], Isosurfaces=[0.0])
+        contour.UpdatePipeline()
+        results["contour"] = measured(contour)
+        oriented = simple.IPIAOrientedPointCloud(Input=spread)
+        results["oriented"] = {"points": 0}
+        oriented.UpdatePipeline()
+        results["oriented"]["points"] = oriented.GetDataInformation().GetNumberOfPoints()
+        # Straight from a reader, in time, and again with other parameters.
+        plain = simple.IPIASurfaceReconstruction(Input=cloud, GridSize=[40, 0, 0])
+        plain.UpdatePipeline()
+        results["plain"] = measured(plain)
+        fitter.SampleDimensions = [60, 60, 60]
+        contour.UpdatePipeline()
+        results["coarse contour"] = measured(contour)
+        fitter.GridSize = [30, 0, 0]
+        contour.UpdatePipeline()
+        results["coarse fit"] = measured(contour)
+    expect(not messages.errors, messages.errors)
+    gathered = [text for text in messages.warnings if "are fitted on the first of" in text]
+    expect(bool(gathered) == (ranks > 1 and rank == 0), messages.warnings)
+    if ranks > 1 and rank == 0:
+        print(gathered[0], flush=True)
+
+    # The fields of f, too.
+    image = fitter.GetClientSideObject().GetOutputDataObject(0)
+    if rank == 0:
+        f = vtk_to_numpy(image.GetPointData().GetArray("f"))
+        if ranks == 1:
+            np.save(t.output("parallel.npy"), f)
+            with open(t.output("parallel.json"), "w", encoding="utf-8") as file:
+                json.dump(results, file)
+        else:
+            found = np.abs(f - np.load(t.output("parallel.npy"))).max()
+            print(f"f differs by {found:.3g}", flush=True)
+            expect(found < 1e-6, f"f differs by {found}")
+            with open(t.output("parallel.json"), encoding="utf-8") as file:
+                single = json.load(file)
+            for name, values in single.items():
+                print(name, values, results[name], flush=True)
+                expect(abs(values["points"] - results[name]["points"]) <= 5, name)
+                if "area" in values:
+                    expect(abs(values["area"] / results[name]["area"] - 1) < 1e-6, name)
+    else:
+        expect(image.GetNumberOfPoints() == 0, "an image on another rank")
+
+    view = simple.CreateRenderView(ViewSize=[400, 400], OrientationAxesVisibility=0)
+    simple.Show(surface, view)
+    simple.ResetCamera(view)
+    simple.SaveScreenshot(t.output(f"parallel{ranks}.png"), view, ImageResolution=[400, 400])
+    if rank == 0 and ranks > 1:
+        found = t.difference(t.output(f"parallel{ranks}.png"), t.output("parallel1.png"))
+        print(f"pictures differ by {found}", flush=True)
+        expect(found < 10, f"pictures differ by {found}")
+    print(f"rank {rank} is done", flush=True)
+
+
+main(int(sys.argv[1]))
