@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ipia
 {
@@ -313,6 +314,15 @@ FitSolution<Dim> solve(
   else
   {
     solveHierarchical(lattice, problem, parameters, offsets, progress, solution);
+  }
+  // Arrays of float hold f, whose far field is as large as an offset.
+  const double largest = std::max({ solution.Solver.Energy, solution.MaximumError,
+    solution.OffsetDistance, parameters.OffsetValue });
+  if (solution.isValid() && !(largest <= std::numeric_limits<float>::max()))
+  {
+    solution.Error = text("f would reach beyond the range of numbers (energy ",
+      solution.Solver.Energy, ", offset ", std::max(solution.OffsetDistance, parameters.OffsetValue),
+      "): a parameter, weight or extra row is too large. Reduce it.");
   }
   return solution;
 }

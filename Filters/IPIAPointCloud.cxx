@@ -98,7 +98,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
         : std::string(".");
       this->Refusal +=
         " Choose a point array of 3 components with SetInputArrayToProcess(0, ...) or "
-        "compute normals with vtkPCANormalEstimation.";
+        "compute normals with vtkPCANormalEstimation, in ParaView with IPIA Oriented Point Cloud.";
       return;
     }
     for (const auto& scalar : PointScalars)
@@ -231,7 +231,8 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   else if (!anyNormal)
   {
     this->Refusal = "All " + std::to_string(this->Ids.size()) +
-      " normals are zero or not finite. Compute normals with vtkPCANormalEstimation.";
+      " normals are zero or not finite. Compute normals with vtkPCANormalEstimation, in ParaView "
+      "with IPIA Oriented Point Cloud.";
   }
   else if (extraRows)
   {

@@ -74,6 +74,10 @@ public:
   vtkNew<vtkImageData> ControlLattice;
   std::vector<vtkMTimeType> FitIdentity;
   std::vector<double> FitParameters;
+  /// Those of the last fit that failed. Every output port may ask for it again; it failed once.
+  std::vector<vtkMTimeType> FailedIdentity;
+  std::vector<double> FailedParameters;
+  bool HasFailed = false;
 
   /// Calls action with the fit of either dimension.
   template <typename Action>
@@ -376,6 +380,7 @@ bool vtkIPIAImplicitFitter::FitInDimension()
   if (!slot->Error.empty())
   {
     vtkErrorMacro(<< slot->Error);
+    this->State->HasFailed = true;
   }
   if (!slot->isValid())
   {
@@ -437,6 +442,11 @@ bool vtkIPIAImplicitFitter::Fit()
   }
 
   this->DiscardFit();
+  if (state.HasFailed && identity == state.FailedIdentity && parameters == state.FailedParameters)
+  {
+    return false;
+  }
+  state.HasFailed = false;
   if (problem.Cloud.LeftOut.Total() + problem.OutsideBounds > 0)
   {
     const auto& left = problem.Cloud.LeftOut;
@@ -458,6 +468,8 @@ bool vtkIPIAImplicitFitter::Fit()
   const bool done = problem.Dimension == 2 ? this->FitInDimension<2>() : this->FitInDimension<3>();
   if (!done)
   {
+    state.FailedIdentity = identity;
+    state.FailedParameters = parameters;
     this->DiscardFit();
     return false;
   }

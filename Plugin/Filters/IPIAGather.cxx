@@ -4,8 +4,12 @@
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
+#include "vtkInformationExecutivePortKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkMultiProcessController.h"
@@ -15,6 +19,7 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace ipia
@@ -49,6 +54,36 @@ void appendLeaves(vtkDataObject* data, vtkMultiBlockDataSet* blocks)
   else
   {
     appendPoints(data, blocks);
+  }
+}
+
+/// What changes if a data set does: its points and point arrays, and when they were changed.
+void appendIdentity(vtkDataObject* data, std::vector<vtkMTimeType>& identity)
+{
+  const auto add = [&identity](vtkObject* part)
+  {
+    identity.push_back(reinterpret_cast<std::uintptr_t>(part));
+    identity.push_back(part ? part->GetMTime() : 0);
+  };
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      appendIdentity(iterator->GetCurrentDataObject(), identity);
+    }
+  }
+  else if (auto* points = vtkPointSet::SafeDownCast(data))
+  {
+    add(points->GetPoints());
+    for (int i = 0; i < points->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      add(points->GetPointData()->GetAbstractArray(i));
+    }
+    for (int type : { vtkDataSetAttributes::NORMALS, vtkDataSetAttributes::SCALARS })
+    {
+      identity.push_back(reinterpret_cast<std::uintptr_t>(points->GetPointData()->GetAbstractAttribute(type)));
+    }
   }
 }
 
@@ -111,7 +146,34 @@ Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part
   return gathered;
 }
 
-GatheredInput::GatheredInput(vtkInformationVector** input, int numberOfPorts)
+vtkDataObject* SteadyCopy::Of(vtkInformation* input)
+{
+  vtkDataObject* data = input ? vtkDataObject::GetData(input) : nullptr;
+  if (!data)
+  {
+    this->Copy = nullptr;
+    return nullptr;
+  }
+  std::vector<vtkMTimeType> identity;
+  // Values changed in place are known to whoever made them: the source.
+  vtkExecutive* producer = nullptr;
+  int port = 0;
+  vtkExecutive::PRODUCER()->Get(input, producer, port);
+  if (auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(producer))
+  {
+    identity.push_back(pipeline->GetPipelineMTime());
+  }
+  appendIdentity(data, identity);
+  if (!this->Copy || identity != this->Identity)
+  {
+    this->Copy.TakeReference(data->NewInstance());
+    this->Copy->ShallowCopy(data);
+    this->Identity = identity;
+  }
+  return this->Copy;
+}
+
+ReplacedInput::ReplacedInput(vtkInformationVector** input, int numberOfPorts)
   : NumberOfPorts(numberOfPorts)
   , Vectors(new vtkInformationVector*[static_cast<std::size_t>(numberOfPorts)])
 {
@@ -122,7 +184,7 @@ GatheredInput::GatheredInput(vtkInformationVector** input, int numberOfPorts)
   }
 }
 
-GatheredInput::~GatheredInput()
+ReplacedInput::~ReplacedInput()
 {
   for (int port = 0; port < this->NumberOfPorts; ++port)
   {
@@ -131,7 +193,7 @@ GatheredInput::~GatheredInput()
   delete[] this->Vectors;
 }
 
-void GatheredInput::Set(int port, vtkDataObject* data)
+void ReplacedInput::Set(int port, vtkDataObject* data)
 {
   vtkInformationVector* vector = this->Vectors[port];
   vector->SetNumberOfInformationObjects(data ? 1 : 0);
@@ -141,7 +203,7 @@ void GatheredInput::Set(int port, vtkDataObject* data)
   }
 }
 
-vtkInformationVector** GatheredInput::Get()
+vtkInformationVector** ReplacedInput::Get()
 {
   return this->Vectors;
 }

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The points of all ranks of a parallel server on its first rank, which alone fits them.
+ * What the fitters of a server get in place of their input: the points of all ranks on the first,
+ * which alone fits them, and copies that stay the same.
  */
 #ifndef IPIAGather_h
 #define IPIAGather_h
 
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <vector>
 
 class vtkDataObject;
 class vtkInformation;
@@ -36,14 +40,28 @@ struct Gathered
 /// arrays travel, cells do not: a fit does not use them.
 Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part);
 
-/// Takes the place of a filter's input vectors: the same, with the gathered data.
-class GatheredInput
+/// A copy of a filter's input that stays the same object for as long as the input does. ParaView puts
+/// a filter before each input that copies it whenever anything is updated: to a fitter that would be
+/// other points, which it would fit again.
+class SteadyCopy
 {
 public:
-  GatheredInput(vtkInformationVector** input, int numberOfPorts);
-  ~GatheredInput();
-  GatheredInput(const GatheredInput&) = delete;
-  void operator=(const GatheredInput&) = delete;
+  /// The copy; nullptr without data.
+  vtkDataObject* Of(vtkInformation* input);
+
+private:
+  vtkSmartPointer<vtkDataObject> Copy;
+  std::vector<vtkMTimeType> Identity;
+};
+
+/// Takes the place of a filter's input vectors: the same, with other data.
+class ReplacedInput
+{
+public:
+  ReplacedInput(vtkInformationVector** input, int numberOfPorts);
+  ~ReplacedInput();
+  ReplacedInput(const ReplacedInput&) = delete;
+  void operator=(const ReplacedInput&) = delete;
 
   /// nullptr leaves the port without data.
   void Set(int port, vtkDataObject* data);

@@ -52,6 +52,7 @@ vtkPIPIAImplicitFitter::vtkPIPIAImplicitFitter()
   , ModelBoundsOrigin{ 0, 0, 0 }
   , ModelBoundsLength{ 1, 1, 1 }
   , Chosen(new ipia::ChosenArrays)
+  , Copies(new ipia::SteadyCopy[2])
   , RanksWithPoints(0)
 {
 }
@@ -109,17 +110,29 @@ void vtkPIPIAImplicitFitter::BringInputUpToDate(vtkInformation* outInfo)
   this->Superclass::BringInputUpToDate(outInfo);
 }
 
+std::unique_ptr<ipia::ReplacedInput> vtkPIPIAImplicitFitter::Steady(vtkInformationVector** input)
+{
+  auto steady = std::make_unique<ipia::ReplacedInput>(input, this->GetNumberOfInputPorts());
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    steady->Set(port, this->Copies[port].Of(input[port]->GetInformationObject(0)));
+  }
+  return steady;
+}
+
 int vtkPIPIAImplicitFitter::RequestInformation(
-  vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkMultiProcessController* controller = ipia::parallelController();
   if (!controller)
   {
-    return this->Superclass::RequestInformation(request, input, output);
+    this->BringInputUpToDate(output->GetInformationObject(0));
+    this->AnnounceOutputs(this->Steady(input)->Get(), output);
+    return 1;
   }
   // Every rank is asked for information, so all meet here; not every rank is asked for data.
   this->BringInputUpToDate(output->GetInformationObject(0));
-  ipia::GatheredInput gathered(input, this->GetNumberOfInputPorts());
+  ipia::ReplacedInput gathered(input, this->GetNumberOfInputPorts());
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
     const bool used = this->GetNumberOfInputConnections(port) > 0;
@@ -186,7 +199,7 @@ int vtkPIPIAImplicitFitter::RequestData(
   vtkMultiProcessController* controller = ipia::parallelController();
   if (!controller)
   {
-    return this->Superclass::RequestData(request, input, output);
+    return this->Superclass::RequestData(request, this->Steady(input)->Get(), output);
   }
   if (controller->GetLocalProcessId() != 0)
   {
@@ -196,7 +209,7 @@ int vtkPIPIAImplicitFitter::RequestData(
     }
     return 1;
   }
-  ipia::GatheredInput gathered(input, this->GetNumberOfInputPorts());
+  ipia::ReplacedInput gathered(input, this->GetNumberOfInputPorts());
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
     gathered.Set(port, this->GatheredPoints[port]);

@@ -29,6 +29,8 @@
 namespace ipia
 {
 class ChosenArrays;
+class ReplacedInput;
+class SteadyCopy;
 }
 
 class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPIPIAImplicitFitter : public vtkIPIAImplicitFitter
@@ -88,7 +90,10 @@ private:
 
   void ApplyModelBounds();
 
+  std::unique_ptr<ipia::ReplacedInput> Steady(vtkInformationVector** input);
+
   std::unique_ptr<ipia::ChosenArrays> Chosen;
+  std::unique_ptr<ipia::SteadyCopy[]> Copies; // of each input port
 
   vtkSmartPointer<vtkDataObject> GatheredPoints[2]; // of each input port, on the first rank
   int RanksWithPoints;

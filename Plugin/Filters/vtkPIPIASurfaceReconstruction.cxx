@@ -180,7 +180,7 @@ int vtkPIPIASurfaceReconstruction::RequestData(
   {
     return this->Superclass::RequestData(request, input, output);
   }
-  ipia::GatheredInput gathered(input, this->GetNumberOfInputPorts());
+  ipia::ReplacedInput gathered(input, this->GetNumberOfInputPorts());
   int ranksWithPoints = 0;
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Each filter by its proxy on a scan: as the package ipia on the installed VTK, and as its picture."""
-import os
-import sys
-
 import numpy as np
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -49,7 +46,7 @@ def test_every_property_is_documented():
             text = prop.GetDocumentation() and prop.GetDocumentation().GetDescription()
             assert text, f"{name}.{key} is not documented"
             inputs = key in ("Input", "ExtraRows")
-            assert inputs or "Default: " in text, f"{name}.{key}: no default in '{text}'"
+            assert inputs or "Default:" in text, f"{name}.{key}: no default in '{text}'"
             boxed = key.startswith("ModelBounds")  # shown with Use Point Bounds off
             other = key in ("NormalX", "NormalY", "NormalZ", "NumberOfNeighbours")
             if prop.GetPanelVisibility() == "default" and not (inputs or boxed or other):
@@ -160,5 +157,20 @@ def test_progress_moves():
         assert shares == sorted(shares), shares
 
 
+def test_other_samples_need_no_other_fit():
+    fitter = simple.IPIAImplicitFitter(Input=t.producer(t.polydata(*t.kitten())))
+    fitter.UpdatePipeline()
+    shares = []
+    algorithm = fitter.GetClientSideObject()
+    algorithm.AddObserver("ProgressEvent", lambda caller, _: shares.append(caller.GetProgress()))
+    fitter.SampleDimensions = [50, 50, 50]
+    fitter.UpdatePipeline()
+    assert algorithm.GetOutputDataObject(0).GetDimensions() == (50, 50, 50)
+    assert not [share for share in shares if 0.05 < share < 0.8], shares
+    fitter.FairingWeight = 1e-3
+    fitter.UpdatePipeline()
+    assert [share for share in shares if 0.05 < share < 0.8], shares
+
+
 if __name__ == "__main__":
-    sys.exit(t.run(globals()))
+    t.run(globals())

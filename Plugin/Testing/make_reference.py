@@ -44,8 +44,8 @@ np.savez(
     spacing=image.GetSpacing(),
     f=array(image, "f"),
     gradient=array(image, "Gradient"),
-    distance=array(fitter.GetOutput(1), "Distance"),
-    coefficient=array(fitter.GetOutput(2), "Coefficient"),
+    distance=array(fitter.GetOutputDataObject(1), "Distance"),
+    coefficient=array(fitter.GetOutputDataObject(2), "Coefficient"),
     vertices=vtk_to_numpy(surface.GetPoints().GetData()),
     triangles=vtk_to_numpy(surface.GetPolys().GetConnectivityArray()),
 )

@@ -137,7 +137,7 @@ def picture(name, *sources, size=(400, 400)):
         view.MultiSamples = 0
         for source in sources:
             display = simple.Show(source, view)
-            simple.ColorBy(display, None)
+            display.ColorArrayName = [None, ""]
             display.DiffuseColor = [0.85, 0.75, 0.6]
         simple.ResetCamera(view)
     else:
@@ -173,10 +173,8 @@ def assert_like_baseline(path, threshold=10):
 
 def run(tests):
     """The functions test_... of a module, each in an empty session."""
-    failed = 0
     for name, test in list(tests.items()):
         if name.startswith("test_") and (len(sys.argv) < 2 or sys.argv[1] in name):
             simple.ResetSession()
             test()
             print(name, flush=True)
-    return failed
