@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <ostream>
 #include <string>
 
@@ -37,46 +38,30 @@ inline std::array<double, 6> boundsOfBox(
   return bounds;
 }
 
-/// The values of extra rows as an array to process.
-constexpr int ExtraValuesIndex = 2, ExtraRowsPort = 1;
+/// The values of extra rows as an array to process, and what the panel offers beside names.
+constexpr int ExtraValuesIndex = 2;
+constexpr char ActiveScalars[] = "Active scalars"; // as in IPIA.xml
 
-/// Takes ParaView's choice of an array to process, and hands it to a filter.
-///
-/// ParaView tells the index in place of a name as long as it has chosen none: that means the active
-/// normals, or the active scalars of extra rows. And ParaView 5.11 crashes where the first array of
-/// an input port has an index above 0: it sees the array of extra rows (index 2 of port 1) only while
-/// the filter works.
-class ChosenArrays
+/// ParaView's choice of the array of extra rows. ParaView 5.11 crashes where the first array of an
+/// input port has an index above 0: it sees this one (index 2 of port 1) only while the filter works.
+class ExtraValuesChoice
 {
 public:
-  /// Whether the choice was taken; if not it is for the superclass.
-  bool Take(vtkAlgorithm* filter, int index, const char* name)
+  void Take(vtkAlgorithm* filter, const char* name)
   {
-    const bool isNamed = name && std::to_string(index) != name;
-    if (index == ExtraValuesIndex)
+    const std::string chosen = name && std::strcmp(name, ActiveScalars) != 0 ? name : "";
+    if (chosen != this->ExtraValues)
     {
-      const std::string chosen = isNamed ? name : "";
-      if (chosen != this->ExtraValues)
-      {
-        this->ExtraValues = chosen;
-        filter->Modified();
-      }
-      return true;
+      this->ExtraValues = chosen;
+      filter->Modified();
     }
-    if (index == 0 && !isNamed)
-    {
-      filter->SetInputArrayToProcess(
-        0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
-      return true;
-    }
-    return false;
   }
 
   /// Shows the filter its extra values for as long as this lives.
   class Shown
   {
   public:
-    Shown(const ChosenArrays& chosen, vtkAlgorithm* filter)
+    Shown(const ExtraValuesChoice& chosen, vtkAlgorithm* filter)
       : Info(filter->GetInputArrayInformation(ExtraValuesIndex))
     {
       if (!chosen.ExtraValues.empty())
@@ -100,6 +85,13 @@ public:
 private:
   std::string ExtraValues;
 };
+
+/// Whether ParaView has chosen no array to process yet, as in a script that has not updated the input:
+/// it then tells the index in place of a name.
+inline bool isUnchosen(int index, const char* name)
+{
+  return !name || std::to_string(index) == name;
+}
 
 inline void printBox(std::ostream& os, vtkIndent indent, bool usePointBounds,
   const double origin[3], const double length[3])

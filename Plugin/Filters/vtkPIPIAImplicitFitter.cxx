@@ -51,7 +51,7 @@ vtkPIPIAImplicitFitter::vtkPIPIAImplicitFitter()
   : UsePointBounds(true)
   , ModelBoundsOrigin{ 0, 0, 0 }
   , ModelBoundsLength{ 1, 1, 1 }
-  , Chosen(new ipia::ChosenArrays)
+  , ExtraValues(new ipia::ExtraValuesChoice)
   , Copies(new ipia::SteadyCopy[2])
   , RanksWithPoints(0)
 {
@@ -86,10 +86,20 @@ void vtkPIPIAImplicitFitter::ApplyModelBounds()
   this->SetModelBounds(bounds.data());
 }
 
+void vtkPIPIAImplicitFitter::SetExtraValuesArray(const char* name)
+{
+  this->ExtraValues->Take(this, name);
+}
+
 void vtkPIPIAImplicitFitter::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
-  if (!this->Chosen->Take(this, index, name))
+  if (index == 0 && ipia::isUnchosen(index, name))
+  {
+    this->Superclass::SetInputArrayToProcess(
+      index, port, connection, association, vtkDataSetAttributes::NORMALS);
+  }
+  else
   {
     this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
   }
@@ -171,7 +181,7 @@ int vtkPIPIAImplicitFitter::RequestInformation(
 vtkTypeBool vtkPIPIAImplicitFitter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  const ipia::ChosenArrays::Shown shown(*this->Chosen, this);
+  const ipia::ExtraValuesChoice::Shown shown(*this->ExtraValues, this);
   return this->Superclass::ProcessRequest(request, input, output);
 }
 

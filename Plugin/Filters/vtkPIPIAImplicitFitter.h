@@ -28,7 +28,7 @@
 
 namespace ipia
 {
-class ChosenArrays;
+class ExtraValuesChoice;
 class ReplacedInput;
 class SteadyCopy;
 }
@@ -59,9 +59,13 @@ public:
   vtkGetVector3Macro(ModelBoundsLength, double);
   ///@}
 
+  /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the default)
+  /// stands for these. Takes the place of SetInputArrayToProcess 2.
+  void SetExtraValuesArray(const char* name);
+
   using vtkAlgorithm::SetInputArrayToProcess;
 
-  /// As ParaView names arrays, see ipia::ChosenArrays.
+  /// As ParaView chooses arrays: normals that it has not chosen yet are the active ones.
   void SetInputArrayToProcess(
     int index, int port, int connection, int association, const char* name) override;
 
@@ -92,7 +96,7 @@ private:
 
   std::unique_ptr<ipia::ReplacedInput> Steady(vtkInformationVector** input);
 
-  std::unique_ptr<ipia::ChosenArrays> Chosen;
+  std::unique_ptr<ipia::ExtraValuesChoice> ExtraValues;
   std::unique_ptr<ipia::SteadyCopy[]> Copies; // of each input port
 
   vtkSmartPointer<vtkDataObject> GatheredPoints[2]; // of each input port, on the first rank

@@ -20,7 +20,7 @@ vtkPIPIASurfaceReconstruction::vtkPIPIASurfaceReconstruction()
   : UsePointBounds(true)
   , ModelBoundsOrigin{ 0, 0, 0 }
   , ModelBoundsLength{ 1, 1, 1 }
-  , Chosen(new ipia::ChosenArrays)
+  , ExtraValues(new ipia::ExtraValuesChoice)
 {
 }
 
@@ -138,10 +138,20 @@ void vtkPIPIASurfaceReconstruction::SetStepSize(double value)
   this->GetFitter()->SetStepSize(value);
 }
 
+void vtkPIPIASurfaceReconstruction::SetExtraValuesArray(const char* name)
+{
+  this->ExtraValues->Take(this, name);
+}
+
 void vtkPIPIASurfaceReconstruction::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
-  if (!this->Chosen->Take(this, index, name))
+  if (index == 0 && ipia::isUnchosen(index, name))
+  {
+    this->Superclass::SetInputArrayToProcess(
+      index, port, connection, association, vtkDataSetAttributes::NORMALS);
+  }
+  else
   {
     this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
   }
@@ -150,7 +160,7 @@ void vtkPIPIASurfaceReconstruction::SetInputArrayToProcess(
 vtkTypeBool vtkPIPIASurfaceReconstruction::ProcessRequest(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  const ipia::ChosenArrays::Shown shown(*this->Chosen, this);
+  const ipia::ExtraValuesChoice::Shown shown(*this->ExtraValues, this);
   return this->Superclass::ProcessRequest(request, input, output);
 }
 

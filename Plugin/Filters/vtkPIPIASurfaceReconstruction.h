@@ -21,7 +21,7 @@
 
 namespace ipia
 {
-class ChosenArrays;
+class ExtraValuesChoice;
 }
 
 class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPIPIASurfaceReconstruction
@@ -74,9 +74,13 @@ public:
   void SetStepSize(double value);
   ///@}
 
+  /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the default)
+  /// stands for these. Takes the place of SetInputArrayToProcess 2.
+  void SetExtraValuesArray(const char* name);
+
   using vtkAlgorithm::SetInputArrayToProcess;
 
-  /// As ParaView names arrays, see ipia::ChosenArrays.
+  /// As ParaView chooses arrays: normals that it has not chosen yet are the active ones.
   void SetInputArrayToProcess(
     int index, int port, int connection, int association, const char* name) override;
 
@@ -102,7 +106,7 @@ private:
 
   void ApplyModelBounds();
 
-  std::unique_ptr<ipia::ChosenArrays> Chosen;
+  std::unique_ptr<ipia::ExtraValuesChoice> ExtraValues;
 };
 
 #endif

@@ -132,7 +132,7 @@ def test_extra_rows():
 
     assert at_the_extra_point() < -0.05, at_the_extra_point()
     proxy.ExtraRows = t.producer(t.polydata(extra, Value=np.full(len(extra), 0.2)))
-    proxy.ExtraValues = ["POINTS", "Value"]
+    proxy.ExtraValues = "Value"
     assert abs(at_the_extra_point() - 0.2) < 0.05, at_the_extra_point()
 
 
