@@ -142,3 +142,25 @@ unpack_scans()
   [ -f "$archive" ] || unpack_package libcgal-demo "$folder/package" "$folder/package.log"
   tar -xzf "$archive" -C "$folder" --strip-components 1
 }
+
+# unpack_bunny FOLDER: bunny.obj of the Debian package glmark2-data, unless it is there.
+unpack_bunny()
+{
+  local folder=$1
+  if [ ! -f "$folder/bunny.obj" ]; then
+    unpack_package glmark2-data "$folder/glmark2" "$folder/glmark2.log"
+    cp "$folder/glmark2/usr/share/glmark2/models/bunny.obj" "$folder"
+  fi
+}
+
+# unpack_paraview FOLDER: ParaView with its programs, headers and Python modules, unless it is there.
+# python3-paraview cannot be installed beside python3-vtk9, which libvtk9-dev needs.
+unpack_paraview()
+{
+  local folder=$1 package
+  [ ! -f "$folder/complete" ] || return 0
+  for package in paraview paraview-dev python3-paraview; do
+    unpack_package "$package" "$folder" "$folder.log"
+  done
+  touch "$folder/complete"
+}

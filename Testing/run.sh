@@ -4,22 +4,28 @@
 #
 #   bash Testing/run.sh
 #
-# Installs what is missing, takes test data from a Debian package, builds the project with warnings
-# as errors and the core with sanitizers, runs all tests, and exits with 1 if anything fails.
-# Builds are in build/test and build/sanitize.
+# Installs what is missing, takes test data and ParaView from Debian packages, builds the project and the
+# plugin with warnings as errors and the core with sanitizers, runs all tests, and exits with 1 if
+# anything fails. Builds are in build/test, build/sanitize and build/plugin; ParaView is unpacked to
+# build/paraview, beside the installed VTK, with which its packages conflict.
 set -euo pipefail
 
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 main=$source_dir/build/test
 sanitized=$source_dir/build/sanitize
+plugin=$source_dir/build/plugin
+paraview=$source_dir/build/paraview
 data=$source_dir/build/data
 source "$source_dir/Examples/install.sh"
 
-mkdir -p "$main" "$sanitized"
+mkdir -p "$main" "$sanitized" "$plugin"
 begin=$SECONDS
 install_packages "$main/install.log" cmake g++ ninja-build libvtk9-dev python3-vtk9 python3-numpy \
-  libeigen3-dev libgtest-dev xvfb xauth
+  libeigen3-dev libgtest-dev xvfb xauth \
+  libqt5help5 libqt5opengl5 libqt5svg5 openmpi-bin imagemagick xdotool valgrind
 unpack_scans "$data"
+unpack_bunny "$data"
+unpack_paraview "$paraview"
 
 # Tests run side by side: their threads must not spin while they wait for each other.
 export OMP_WAIT_POLICY=passive
@@ -46,8 +52,9 @@ check()
     failures+=("$name: build")
     return 0
   fi
-  # xvfb-run because VTK draws on a display; no tests at all is a failure, too.
-  if ! (cd "$folder" && xvfb-run -a ctest -j "$(nproc)" --no-tests=error --output-on-failure) |
+  # xvfb-run because VTK draws on a display, which without -noreset starts anew, and for a moment is
+  # not there, whenever the last program that draws ends; no tests at all is a failure, too.
+  if ! (cd "$folder" && xvfb-run -a -s "-noreset -screen 0 1280x1024x24" ctest -j "$(nproc)" --no-tests=error --output-on-failure) |
     tee "$folder/ctest.log"; then
     mapfile -t -O "${#failures[@]}" failures < <(
       sed -n "s/^\t *[0-9]* - \(.*\)/$name: \1/p" "$folder/ctest.log" | grep . || echo "$name: ctest")
@@ -60,6 +67,10 @@ check "core with sanitizers" "$sanitized" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
   -DIPIA_CORE_ONLY=ON -DIPIA_SANITIZE=address,undefined -DIPIA_BUILD_TESTING=ON
 check "all" "$main" -DCMAKE_BUILD_TYPE=Release \
   -DIPIA_BUILD_TESTING=ON -DIPIA_BUILD_EXAMPLES=ON -DIPIA_WRAP_PYTHON=ON
+# Has a ParaView of its own: the two VTKs cannot share a build tree.
+check "plugin" "$plugin" -DCMAKE_BUILD_TYPE=Release -DIPIA_BUILD_PARAVIEW_PLUGIN=ON \
+  -DIPIA_BUILD_TESTING=ON -DIPIA_STANDALONE_DIR="$main" \
+  -DParaView_DIR="$(echo "$paraview"/usr/lib/*/cmake/paraview-*)"
 
 echo
 for line in "${summary[@]}"; do
