@@ -320,9 +320,10 @@ FitSolution<Dim> solve(
     solution.OffsetDistance, parameters.OffsetValue });
   if (solution.isValid() && !(largest <= std::numeric_limits<float>::max()))
   {
-    solution.Error = text("f would reach beyond the range of numbers (energy ",
-      solution.Solver.Energy, ", offset ", std::max(solution.OffsetDistance, parameters.OffsetValue),
-      "): a parameter, weight or extra row is too large. Reduce it.");
+    solution.Error =
+      text("f would reach beyond the range of numbers (energy ", solution.Solver.Energy,
+        ", offset ", std::max(solution.OffsetDistance, parameters.OffsetValue),
+        "): a parameter, weight or extra row is too large. Reduce it.");
   }
   return solution;
 }

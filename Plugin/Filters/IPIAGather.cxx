@@ -82,7 +82,8 @@ void appendIdentity(vtkDataObject* data, std::vector<vtkMTimeType>& identity)
     }
     for (int type : { vtkDataSetAttributes::NORMALS, vtkDataSetAttributes::SCALARS })
     {
-      identity.push_back(reinterpret_cast<std::uintptr_t>(points->GetPointData()->GetAbstractAttribute(type)));
+      identity.push_back(
+        reinterpret_cast<std::uintptr_t>(points->GetPointData()->GetAbstractAttribute(type)));
     }
   }
 }

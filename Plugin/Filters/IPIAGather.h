@@ -40,9 +40,9 @@ struct Gathered
 /// arrays travel, cells do not: a fit does not use them.
 Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part);
 
-/// A copy of a filter's input that stays the same object for as long as the input does. ParaView puts
-/// a filter before each input that copies it whenever anything is updated: to a fitter that would be
-/// other points, which it would fit again.
+/// A copy of a filter's input that stays the same object for as long as the input does. ParaView
+/// puts a filter before each input that copies it whenever anything is updated: to a fitter that
+/// would be other points, which it would fit again.
 class SteadyCopy
 {
 public:

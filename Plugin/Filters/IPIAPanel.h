@@ -43,7 +43,8 @@ constexpr int ExtraValuesIndex = 2;
 constexpr char ActiveScalars[] = "Active scalars"; // as in IPIA.xml
 
 /// ParaView's choice of the array of extra rows. ParaView 5.11 crashes where the first array of an
-/// input port has an index above 0: it sees this one (index 2 of port 1) only while the filter works.
+/// input port has an index above 0: it sees this one (index 2 of port 1) only while the filter
+/// works.
 class ExtraValuesChoice
 {
 public:
@@ -86,8 +87,8 @@ private:
   std::string ExtraValues;
 };
 
-/// Whether ParaView has chosen no array to process yet, as in a script that has not updated the input:
-/// it then tells the index in place of a name.
+/// Whether ParaView has chosen no array to process yet, as in a script that has not updated the
+/// input: it then tells the index in place of a name.
 inline bool isUnchosen(int index, const char* name)
 {
   return !name || std::to_string(index) == name;

@@ -9,6 +9,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkFloatArray.h"
+#include "vtkIdList.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
@@ -21,8 +22,8 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
-#include "vtkVersion.h"
 
+#include <algorithm>
 #include <cmath>
 
 vtkStandardNewMacro(vtkIPIAOrientedPointCloud);
@@ -72,6 +73,41 @@ vtkSmartPointer<vtkPolyData> asOne(vtkDataObject* data)
     only = append->GetOutput();
   }
   return only;
+}
+
+/// Those points that have finite coordinates, with their arrays.
+vtkSmartPointer<vtkPolyData> finitePoints(vtkPolyData* points)
+{
+  vtkNew<vtkIdList> kept, to;
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    points->GetPoint(i, x);
+    if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]))
+    {
+      to->InsertNextId(kept->GetNumberOfIds());
+      kept->InsertNextId(i);
+    }
+  }
+  const vtkIdType n = kept->GetNumberOfIds();
+  if (n == points->GetNumberOfPoints())
+  {
+    return points;
+  }
+  auto finite = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> positions;
+  positions->SetDataType(points->GetPoints()->GetDataType());
+  positions->SetNumberOfPoints(n);
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    positions->SetPoint(i, points->GetPoint(kept->GetId(i)));
+  }
+  finite->SetPoints(positions);
+  finite->GetPointData()->CopyAllOn();
+  finite->GetPointData()->CopyAllocate(points->GetPointData(), n);
+  finite->GetPointData()->SetNumberOfTuples(n);
+  finite->GetPointData()->CopyData(points->GetPointData(), kept, to);
+  return finite;
 }
 
 /// The points about their centre: vtkPCANormalEstimation loses digits far from the origin.
@@ -167,8 +203,8 @@ vtkSmartPointer<vtkDataArray> vtkIPIAOrientedPointCloud::Estimate(vtkPolyData* p
   const auto cloud = centred(points);
   vtkNew<vtkPCANormalEstimation> estimation;
   estimation->SetInputData(cloud);
-  estimation->SetSampleSize(static_cast<int>(
-    std::min<vtkIdType>(this->NumberOfNeighbours, points->GetNumberOfPoints())));
+  estimation->SetSampleSize(
+    static_cast<int>(std::min<vtkIdType>(this->NumberOfNeighbours, points->GetNumberOfPoints())));
   estimation->SetNormalOrientationToGraphTraversal();
   estimation->Update();
   vtkSmartPointer<vtkDataArray> normals = estimation->GetOutput()->GetPointData()->GetNormals();
@@ -227,11 +263,17 @@ int vtkIPIAOrientedPointCloud::RequestData(
       return 1;
     }
   }
-  const auto points = asOne(data);
-  if (!points)
+  const auto all = asOne(data);
+  if (!all)
   {
     vtkErrorMacro("The input has no points.");
     return 1;
+  }
+  const auto points = finitePoints(all);
+  const vtkIdType leftOut = all->GetNumberOfPoints() - points->GetNumberOfPoints();
+  if (leftOut > 0)
+  {
+    vtkWarningMacro("Left out: " << leftOut << " non-finite point(s).");
   }
   this->UpdateProgress(0.1);
   const auto normals =

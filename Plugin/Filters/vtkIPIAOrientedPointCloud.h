@@ -11,9 +11,10 @@
  * - from three point arrays of one component each, such as the columns nx, ny, nz of a table that
  *   became points (vtkTableToPolyData).
  *
- * Estimated normals of parts thinner than a few point spacings, and of surfaces that touch, can have
- * the wrong side. A warning tells if fewer than nine in ten of the outermost normals point outward.
- * Normals of the scanner are better.
+ * Non-finite points are left out, with a warning that counts them; fewer than 4 points to estimate
+ * from, and arrays that are not there, are errors. Estimated normals of parts thinner than a few
+ * point spacings, and of surfaces that touch, can have the wrong side. A warning tells if fewer
+ * than nine in ten of the outermost normals point outward. Normals of the scanner are better.
  *
  * With more than one rank the points of all are gathered on the first, as neighbours may lie on
  * another.

@@ -146,9 +146,8 @@ int vtkPIPIAImplicitFitter::RequestInformation(
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
     const bool used = this->GetNumberOfInputConnections(port) > 0;
-    const ipia::Gathered points = used
-      ? ipia::gatherPoints(controller, vtkDataObject::GetData(input[port]))
-      : ipia::Gathered();
+    const ipia::Gathered points =
+      used ? ipia::gatherPoints(controller, vtkDataObject::GetData(input[port])) : ipia::Gathered();
     this->GatheredPoints[port] = points.Data;
     this->RanksWithPoints = port == 0 ? points.RanksWithPoints : this->RanksWithPoints;
     gathered.Set(port, points.Data);
@@ -226,8 +225,8 @@ int vtkPIPIAImplicitFitter::RequestData(
   }
   if (this->RanksWithPoints > 1)
   {
-    vtkWarningMacro(
-      << ipia::gatheredWarning(this->RanksWithPoints, controller->GetNumberOfProcesses()));
+    vtkWarningMacro(<< ipia::gatheredWarning(
+                      this->RanksWithPoints, controller->GetNumberOfProcesses()));
   }
   return this->Superclass::RequestData(request, gathered.Get(), output);
 }

@@ -11,8 +11,8 @@
  *
  * ### Parallel servers
  * With more than one rank each asks its input for its own part; the points of all are gathered on
- * the first rank, which fits them and has the whole output, with a warning. The other ranks know the
- * extents and have empty outputs. The result is that of a single rank; memory and time are not
+ * the first rank, which fits them and has the whole output, with a warning. The other ranks know
+ * the extents and have empty outputs. The result is that of a single rank; memory and time are not
  * shared out.
  *
  * @sa vtkIPIAImplicitFitter vtkPIPIASurfaceReconstruction
@@ -59,8 +59,8 @@ public:
   vtkGetVector3Macro(ModelBoundsLength, double);
   ///@}
 
-  /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the default)
-  /// stands for these. Takes the place of SetInputArrayToProcess 2.
+  /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the
+  /// default) stands for these. Takes the place of SetInputArrayToProcess 2.
   void SetExtraValuesArray(const char* name);
 
   using vtkAlgorithm::SetInputArrayToProcess;

@@ -74,8 +74,8 @@ public:
   void SetStepSize(double value);
   ///@}
 
-  /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the default)
-  /// stands for these. Takes the place of SetInputArrayToProcess 2.
+  /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the
+  /// default) stands for these. Takes the place of SetInputArrayToProcess 2.
   void SetExtraValuesArray(const char* name);
 
   using vtkAlgorithm::SetInputArrayToProcess;

@@ -89,8 +89,9 @@ def test_columns_of_a_table():
 def test_arrays_are_those_that_fit():
     points, normals = t.sphere()
     ones = np.ones(len(points))
-    source = t.producer(
-        t.polydata(points, normals, Other=2 * normals, Quality=ones, Pair=normals[:, :2]))
+    data = t.polydata(points, normals, Other=2 * normals, Quality=ones, Pair=normals[:, :2])
+    data.GetPointData().SetActiveScalars("Quality")  # no weights for that
+    source = t.producer(data)
     proxy = simple.IPIASurfaceReconstruction(Input=source)
     available = {}
     for name in ("Normals", "PointWeights", "LocalFairing"):
@@ -99,7 +100,8 @@ def test_arrays_are_those_that_fit():
     assert sorted(available["Normals"]) == ["Normals", "Other"], available
     assert sorted(available["PointWeights"]) == ["None", "Quality"], available
     assert sorted(available["LocalFairing"]) == ["None", "Quality"], available
-    assert proxy.Normals[1] == "Normals" and proxy.PointWeights[1] == "None"
+    assert proxy.Normals[1] == "Normals"
+    assert proxy.PointWeights[1] == "None" and proxy.LocalFairing[1] == "None"
     proxy.PointWeights = ["POINTS", "Quality"]
     proxy.Normals = ["POINTS", "Other"]
     t.assert_is_sphere(result(proxy))
@@ -179,6 +181,27 @@ def test_warnings_reach_the_messages():
     assert len(messages.warnings) == 1, messages.warnings
     assert "7 non-finite point(s)" in messages.warnings[0], messages.warnings
     assert "3 zero or non-finite normal(s)" in messages.warnings[0], messages.warnings
+
+
+def test_orientation_leaves_out_what_is_not_finite():
+    points, _ = t.sphere()
+    points[:7] = np.nan
+    points[9, 1] = np.inf
+    cloud = simple.IPIAOrientedPointCloud(
+        Input=t.producer(t.polydata(points, Id=np.arange(len(points)))))
+    with t.Messages() as messages:
+        found = result(cloud)
+        t.assert_is_sphere(result(simple.IPIASurfaceReconstruction(Input=cloud)))
+    assert not messages.errors, messages.errors
+    assert len(messages.warnings) == 1, messages.warnings
+    assert "Left out: 8 non-finite point(s)" in messages.warnings[0], messages.warnings
+    ids = found.GetPointData().GetArray("Id")
+    assert [ids.GetValue(i) for i in range(3)] == [7, 8, 10]
+    for count, reason in ((0, "no points"), (3, "at least 4")):
+        few = simple.IPIAOrientedPointCloud(Input=t.producer(t.polydata(points[20:20 + count])))
+        with t.Messages() as messages:
+            assert result(few).GetNumberOfPoints() == 0
+        assert len(messages.errors) == 1 and reason in messages.errors[0], messages.errors
 
 
 def test_bounds_as_a_box():
