@@ -25,9 +25,9 @@ constexpr int BatchSize = 32;
 constexpr int GroupSize = 4, Lanes = 8;
 
 /**
- * All rows of one tile. A vector holds four coefficients along x of two functions: the numerator
- * and the denominator, or the two sums. The coefficients of a cell stay in registers while
- * its rows of a batch meet them.
+ * All rows of one tile. A vector holds pairs of numbers of four coefficients along x, numerator and
+ * denominator or the two sums. The coefficients of a cell stay in registers while its rows of a
+ * batch meet them.
  */
 template <int Dim, Sums Kind>
 struct RationalKernel
@@ -47,9 +47,10 @@ struct RationalKernel
   {
     Part Parts[BatchSize];
     double Products[BatchSize][Lines]; // B_k(z) B_j(y)
-    Vector8 AlongX[BatchSize];         // B(x), twice
-    double Numerator[BatchSize], Denominator[BatchSize], Target[BatchSize], Weight[BatchSize];
-    double First[BatchSize], Second[BatchSize]; // what it adds to the two sums
+    Vector8 AlongX[BatchSize];         // B(x), each twice
+    double Values[2 * BatchSize];      // numerator and denominator
+    double Target[BatchSize], Weight[BatchSize];
+    double Terms[2 * BatchSize]; // what it adds to the two sums
   };
 
   static IPIA_INLINE void computeBases(const ConstraintRow<Dim>* rows, int count, Batch& batch)
@@ -63,7 +64,7 @@ struct RationalKernel
       const double x = rows[r].T[0], y = rows[r].T[1];
       const Vector8 t = { x, x, x, x, y, y, y, y };
       const Vector8 xy = basis0 + t * (basis1 + t * (basis2 + t * basis3));
-      batch.AlongX[r] = __builtin_shufflevector(xy, xy, 0, 1, 2, 3, 0, 1, 2, 3);
+      batch.AlongX[r] = __builtin_shufflevector(xy, xy, 0, 0, 1, 1, 2, 2, 3, 3);
       if (Dim == 2)
       {
         const Vector4 along = __builtin_shufflevector(xy, xy, 4, 5, 6, 7);
@@ -83,60 +84,14 @@ struct RationalKernel
     }
   }
 
-  /// Four values each of two arrays side by side.
-  static IPIA_INLINE void load(const double* a, const double* b, Vector8& both)
+  /// Where the pairs of line i of a cell begin.
+  static IPIA_INLINE std::int64_t lineOf(
+    const Part& part, const std::array<std::int64_t, 2>& stride, int i)
   {
-    Vector4 left, right;
-    std::memcpy(&left, a, sizeof(left));
-    std::memcpy(&right, b, sizeof(right));
-    both = __builtin_shufflevector(left, right, 0, 1, 2, 3, 4, 5, 6, 7);
+    return 2 * (part.Coefficient + i / Order * stride[1] + i % Order * stride[0]);
   }
 
-  static IPIA_INLINE void store(const Vector8& both, double* a, double* b)
-  {
-    const Vector4 left = __builtin_shufflevector(both, both, 0, 1, 2, 3);
-    const Vector4 right = __builtin_shufflevector(both, both, 4, 5, 6, 7);
-    std::memcpy(a, &left, sizeof(left));
-    std::memcpy(b, &right, sizeof(right));
-  }
-
-  static IPIA_INLINE void gather(const Part& part, const std::array<std::int64_t, 2>& stride,
-    const double* numerator, const double* weights, Batch& batch)
-  {
-    Vector8 c[Lines];
-    for (int i = 0; i < Lines; ++i)
-    {
-      const std::int64_t at = part.Coefficient + i / Order * stride[1] + i % Order * stride[0];
-      load(numerator + at, weights + at, c[i]);
-    }
-    int r = part.Begin;
-    for (; r + GroupSize <= part.End; r += GroupSize)
-    {
-      Vector8 g[GroupSize];
-      for (int i = 0; i < GroupSize; ++i)
-      {
-        sumLines(c, batch, r + i, g[i]);
-      }
-      // Lanes 2 m and 2 m + 1 of two rows, then of four.
-      const Vector8 a = __builtin_shufflevector(g[0], g[1], 0, 8, 2, 10, 4, 12, 6, 14) +
-        __builtin_shufflevector(g[0], g[1], 1, 9, 3, 11, 5, 13, 7, 15);
-      const Vector8 b = __builtin_shufflevector(g[2], g[3], 0, 8, 2, 10, 4, 12, 6, 14) +
-        __builtin_shufflevector(g[2], g[3], 1, 9, 3, 11, 5, 13, 7, 15);
-      store(__builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
-          __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15),
-        batch.Numerator + r, batch.Denominator + r);
-    }
-    for (; r < part.End; ++r)
-    {
-      Vector8 g;
-      sumLines(c, batch, r, g);
-      const Vector8 pairs = g + __builtin_shufflevector(g, g, 1, 0, 3, 2, 5, 4, 7, 6);
-      batch.Numerator[r] = pairs[0] + pairs[2];
-      batch.Denominator[r] = pairs[4] + pairs[6];
-    }
-  }
-
-  /// Lanes 0 to 3 of the sum add up to the numerator at row r, the others to the denominator.
+  /// Even lanes of the sum add up to the numerator at row r, odd ones to the denominator.
   static IPIA_INLINE void sumLines(
     const Vector8 (&c)[Lines], const Batch& batch, int r, Vector8& sum)
   {
@@ -148,60 +103,82 @@ struct RationalKernel
     sum = (sums[0] + sums[1]) * batch.AlongX[r];
   }
 
+  static IPIA_INLINE void gather(
+    const Part& part, const std::array<std::int64_t, 2>& stride, const double* pairs, Batch& batch)
+  {
+    Vector8 c[Lines];
+    for (int i = 0; i < Lines; ++i)
+    {
+      std::memcpy(&c[i], pairs + lineOf(part, stride, i), sizeof(c[i]));
+    }
+    int r = part.Begin;
+    for (; r + GroupSize <= part.End; r += GroupSize)
+    {
+      Vector8 g[GroupSize];
+      for (int i = 0; i < GroupSize; ++i)
+      {
+        sumLines(c, batch, r + i, g[i]);
+      }
+      // Two pairs of lanes of two rows, then of four.
+      const Vector8 a = __builtin_shufflevector(g[0], g[1], 0, 1, 8, 9, 4, 5, 12, 13) +
+        __builtin_shufflevector(g[0], g[1], 2, 3, 10, 11, 6, 7, 14, 15);
+      const Vector8 b = __builtin_shufflevector(g[2], g[3], 0, 1, 8, 9, 4, 5, 12, 13) +
+        __builtin_shufflevector(g[2], g[3], 2, 3, 10, 11, 6, 7, 14, 15);
+      const Vector8 values = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
+        __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+      std::memcpy(batch.Values + 2 * r, &values, sizeof(values));
+    }
+    for (; r < part.End; ++r)
+    {
+      Vector8 g;
+      sumLines(c, batch, r, g);
+      const Vector4 half =
+        __builtin_shufflevector(g, g, 0, 1, 2, 3) + __builtin_shufflevector(g, g, 4, 5, 6, 7);
+      batch.Values[2 * r] = half[0] + half[2];
+      batch.Values[2 * r + 1] = half[1] + half[3];
+    }
+  }
+
   /// What each row adds to the sums, and to the energy; eight rows at a time.
-  static IPIA_INLINE void divide(double* inverse, int count, Batch& batch, Vector8& energy)
+  static IPIA_INLINE void divide(int count, Batch& batch, Vector8& energy)
   {
     for (int r = count; r % Lanes != 0; ++r)
     {
-      batch.Numerator[r] = batch.Target[r] = batch.Weight[r] = 0;
-      batch.Denominator[r] = 1;
+      batch.Values[2 * r] = batch.Target[r] = batch.Weight[r] = 0;
+      batch.Values[2 * r + 1] = 1;
     }
     for (int r = 0; r < count; r += Lanes)
     {
-      Vector8 d{}, numerator, target, weight;
-      std::memcpy(&numerator, batch.Numerator + r, sizeof(numerator));
+      Vector8 values[2], target, weight;
+      std::memcpy(values, batch.Values + 2 * r, sizeof(values));
       std::memcpy(&target, batch.Target + r, sizeof(target));
       std::memcpy(&weight, batch.Weight + r, sizeof(weight));
-      if (Kind == Sums::Coefficients)
-      {
-        std::memcpy(&d, batch.Denominator + r, sizeof(d));
-        d = 1 / d;
-        // The next ones may be another thread's.
-        if (r + Lanes <= count)
-        {
-          std::memcpy(inverse + r, &d, sizeof(d));
-        }
-        for (int i = r; r + Lanes > count && i < count; ++i)
-        {
-          inverse[i] = d[i - r];
-        }
-      }
-      else
-      {
-        std::memcpy(&d, inverse + r, sizeof(d));
-      }
-      const Vector8 value = numerator * d, difference = value - target, scaled = weight * d;
+      const Vector8 inverse =
+        1 / __builtin_shufflevector(values[0], values[1], 1, 3, 5, 7, 9, 11, 13, 15);
+      const Vector8 value =
+        __builtin_shufflevector(values[0], values[1], 0, 2, 4, 6, 8, 10, 12, 14) * inverse;
+      const Vector8 difference = value - target, scaled = weight * inverse;
       const Vector8 first = scaled * (Kind == Sums::Coefficients ? -difference : difference);
       const Vector8 second = Kind == Sums::Coefficients ? scaled : first * value;
-      std::memcpy(batch.First + r, &first, sizeof(first));
-      std::memcpy(batch.Second + r, &second, sizeof(second));
+      const Vector8 terms[2] = { __builtin_shufflevector(first, second, 0, 8, 1, 9, 2, 10, 3, 11),
+        __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15) };
+      std::memcpy(batch.Terms + 2 * r, terms, sizeof(terms));
       energy += weight * difference * difference;
     }
   }
 
-  static IPIA_INLINE void scatter(const Part& part, const std::array<std::int64_t, 2>& stride,
-    const Batch& batch, double* first, double* second)
+  static IPIA_INLINE void scatter(
+    const Part& part, const std::array<std::int64_t, 2>& stride, const Batch& batch, double* sums)
   {
     Vector8 add[Lines];
     for (int i = 0; i < Lines; ++i)
     {
-      const std::int64_t at = part.Coefficient + i / Order * stride[1] + i % Order * stride[0];
-      load(first + at, second + at, add[i]);
+      std::memcpy(&add[i], sums + lineOf(part, stride, i), sizeof(add[i]));
     }
     for (int r = part.Begin; r < part.End; ++r)
     {
-      const double a = batch.First[r], b = batch.Second[r];
-      const Vector8 both = batch.AlongX[r] * Vector8{ a, a, a, a, b, b, b, b };
+      const double a = batch.Terms[2 * r], b = batch.Terms[2 * r + 1];
+      const Vector8 both = batch.AlongX[r] * Vector8{ a, b, a, b, a, b, a, b };
       for (int i = 0; i < Lines; ++i)
       {
         add[i] += batch.Products[r][i] * both;
@@ -209,17 +186,15 @@ struct RationalKernel
     }
     for (int i = 0; i < Lines; ++i)
     {
-      const std::int64_t at = part.Coefficient + i / Order * stride[1] + i % Order * stride[0];
-      store(add[i], first + at, second + at);
+      std::memcpy(sums + lineOf(part, stride, i), &add[i], sizeof(add[i]));
     }
   }
 
   static IPIA_INLINE void run(const ConstraintRow<Dim>* rows,
     const typename ConstraintRows<Dim>::Cell* begin, const typename ConstraintRows<Dim>::Cell* end,
-    const std::array<std::int64_t, 2>& stride, const double* numerator, const double* weights,
-    double* inverse, double* first, double* second, double& energy)
+    const std::array<std::int64_t, 2>& stride, const double* pairs, double* sums, double& energy)
   {
-    Vector8 sum{};
+    Vector8 energies{};
     Batch batch;
     std::int64_t row = begin->Begin;
     for (auto cell = begin; cell != end;)
@@ -240,18 +215,18 @@ struct RationalKernel
       computeBases(rows + start, count, batch);
       for (int p = 0; p < parts; ++p)
       {
-        gather(batch.Parts[p], stride, numerator, weights, batch);
+        gather(batch.Parts[p], stride, pairs, batch);
       }
-      divide(inverse + start, count, batch, sum);
+      divide(count, batch, energies);
       for (int p = 0; p < parts; ++p)
       {
-        scatter(batch.Parts[p], stride, batch, first, second);
+        scatter(batch.Parts[p], stride, batch, sums);
       }
     }
     energy = 0;
     for (int lane = 0; lane < Lanes; ++lane)
     {
-      energy += sum[lane];
+      energy += energies[lane];
     }
   }
 };
@@ -261,34 +236,25 @@ template <int Dim>
 RationalOperator<Dim>::RationalOperator(const ConstraintRows<Dim>& rows, int threads)
   : Rows(rows)
   , Touched(rows)
-  , Inverse(Vector::Ones(rows.size() + Lanes))
   , Threads(resolveThreads(threads))
 {
 }
 
 template <int Dim>
 template <typename Kernel>
-double RationalOperator<Dim>::sweep(
-  const double* numerator, const double* weights, Vector& first, Vector& second)
+double RationalOperator<Dim>::sweep(const CoefficientPairs& pairs, CoefficientPairs& sums) const
 {
   const Lattice<Dim>& lattice = this->Rows.lattice();
-  for (Vector* sums : { &first, &second })
+  if (sums.cols() != lattice.numberOfCoefficients())
   {
-    if (sums->size() != lattice.numberOfCoefficients())
-    {
-      sums->setZero(lattice.numberOfCoefficients());
-    }
+    sums.setZero(2, lattice.numberOfCoefficients());
   }
   this->Touched.forEach(this->Threads,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      first.segment(begin, end - begin).setZero();
-      second.segment(begin, end - begin).setZero();
-    });
+    [&](std::int64_t begin, std::int64_t end) { sums.middleCols(begin, end - begin).setZero(); });
   const std::array<std::int64_t, 2> stride = { lattice.Size[0], lattice.Size[0] * lattice.Size[1] };
   std::vector<double> energies(static_cast<std::size_t>(this->Rows.numberOfTiles()));
-  double *const one = first.data(), *const two = second.data(),
-                *const inverse = this->Inverse.data();
+  const double* const from = pairs.data();
+  double* const to = sums.data();
 #pragma omp parallel num_threads(this->Threads)
   for (int colour = 0; colour < ConstraintRows<Dim>::NumberOfColours; ++colour)
   {
@@ -298,8 +264,7 @@ double RationalOperator<Dim>::sweep(
     {
       double energy = 0;
       dispatch<Kernel>(this->Rows.rows(), this->Rows.cells() + this->Rows.tileBegin(tile),
-        this->Rows.cells() + this->Rows.tileBegin(tile + 1), stride, numerator, weights, inverse,
-        one, two, energy);
+        this->Rows.cells() + this->Rows.tileBegin(tile + 1), stride, from, to, energy);
       energies[static_cast<std::size_t>(tile)] = energy;
     }
   }
@@ -313,17 +278,16 @@ double RationalOperator<Dim>::sweep(
 
 template <int Dim>
 double RationalOperator<Dim>::coefficientSums(
-  const Vector& numerator, const Vector& weights, Vector& residualSums, Vector& rowSums)
+  const CoefficientPairs& pairs, CoefficientPairs& sums) const
 {
-  return this->sweep<RationalKernel<Dim, Sums::Coefficients>>(
-    numerator.data(), weights.data(), residualSums, rowSums);
+  return this->sweep<RationalKernel<Dim, Sums::Coefficients>>(pairs, sums);
 }
 
 template <int Dim>
-double RationalOperator<Dim>::weightSums(const Vector& numerator, Vector& sums, Vector& valueSums)
+double RationalOperator<Dim>::weightSums(
+  const CoefficientPairs& pairs, CoefficientPairs& sums) const
 {
-  return this->sweep<RationalKernel<Dim, Sums::Weights>>(
-    numerator.data(), numerator.data(), sums, valueSums);
+  return this->sweep<RationalKernel<Dim, Sums::Weights>>(pairs, sums);
 }
 
 template <int Dim>

@@ -19,11 +19,6 @@ constexpr int MostHalvings = 60;
 /// Growth of sqrt(E) that rounding may cause.
 constexpr double RoundingOfEnergy = 1e-13;
 
-double sum(double a, double b)
-{
-  return a + b;
-}
-
 /// The state of the iteration, and its two steps.
 template <int Dim>
 class RationalIteration
@@ -40,8 +35,10 @@ public:
     , WeightSum(Operator.sumOfRowWeights())
   {
     this->W = this->NewW = Vector::Ones(this->C.size());
-    this->Numerator = this->C;
-    this->Operator.coefficientSums(this->Numerator, this->W, this->ResidualSums, this->RowSums);
+    this->Pairs.resize(2, this->C.size());
+    this->Pairs.row(0) = this->C;
+    this->Pairs.row(1).setOnes();
+    this->Operator.coefficientSums(this->Pairs, this->CoefficientSums);
     this->chooseStepSize();
     this->evaluate();
   }
@@ -49,27 +46,32 @@ public:
   /// ||D^T V r - kappa L c||
   double gradientNorm() const
   {
-    const Vector *const s = &this->Sums, *const w = &this->W;
     if (!this->Oscillation.isActive())
     {
       return std::sqrt(this->Operator.touched().reduce(
         this->Operator.threads(), 0.0,
         [&](std::int64_t begin, std::int64_t end, double& partial)
         {
-          const auto n = end - begin;
-          partial += w->segment(begin, n).cwiseProduct(s->segment(begin, n)).squaredNorm();
+          for (std::int64_t i = begin; i < end; ++i)
+          {
+            const double g = this->W[i] * this->WeightSums(0, i);
+            partial += g * g;
+          }
         },
-        sum));
+        [](double a, double b) { return a + b; }));
     }
-    const Vector& l = this->Oscillation.laplacian();
+    const Vector& laplacian = this->Oscillation.laplacian();
     const double kappa = this->Oscillation.kappa();
     return std::sqrt(parallelSum(this->C.size(), this->Operator.threads(),
       [&](std::int64_t begin, std::int64_t end)
       {
-        const auto n = end - begin;
-        return (
-          w->segment(begin, n).cwiseProduct(s->segment(begin, n)) + kappa * l.segment(begin, n))
-          .squaredNorm();
+        double sum = 0;
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          const double g = this->W[i] * this->WeightSums(0, i) + kappa * laplacian[i];
+          sum += g * g;
+        }
+        return sum;
       }));
   }
 
@@ -107,11 +109,11 @@ public:
     this->Operator.touched().forEach(this->Operator.threads(),
       [&](std::int64_t begin, std::int64_t end)
       {
-        const auto n = end - begin;
-        const auto w = this->W.segment(begin, n);
-        this->C.segment(begin, n) +=
-          this->Mu * w.cwiseProduct(this->ResidualSums.segment(begin, n));
-        this->Numerator.segment(begin, n) = w.cwiseProduct(this->C.segment(begin, n));
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          this->C[i] += this->Mu * (this->W[i] * this->CoefficientSums(0, i));
+          this->Pairs(0, i) = this->W[i] * this->C[i];
+        }
       });
     this->evaluate();
     return !energyRose(before, this->RowEnergy + this->Oscillation.descendedEnergy(),
@@ -125,9 +127,10 @@ private:
       this->Operator.threads(), 0.0,
       [&](std::int64_t begin, std::int64_t end, double& partial)
       {
-        const auto n = end - begin;
-        partial = std::max(partial,
-          this->W.segment(begin, n).cwiseProduct(this->RowSums.segment(begin, n)).maxCoeff());
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          partial = std::max(partial, this->Pairs(1, i) * this->CoefficientSums(1, i));
+        }
       },
       [](double a, double b) { return std::max(a, b); });
     this->Mu = this->Oscillation.chooseStepSize(largest, this->Options.StepSize);
@@ -135,12 +138,12 @@ private:
 
   void evaluate()
   {
-    this->RowEnergy = this->Operator.weightSums(this->Numerator, this->Sums, this->ValueSums);
+    this->RowEnergy = this->Operator.weightSums(this->Pairs, this->WeightSums);
     this->Oscillation.update(this->C);
   }
 
   /// Takes the step tau from W to NewW. Returns whether no denominator becomes 0 and E does not
-  /// grow; then the sums, the numerator and the energy are those of the new weights.
+  /// grow; then the sums, the pairs and the energy are those of the new weights.
   bool tryWeights(double tau)
   {
     const double smallest = this->Operator.touched().reduce(
@@ -149,10 +152,12 @@ private:
       {
         for (std::int64_t i = begin; i < end; ++i)
         {
-          const double gradient = 2 * (this->C[i] * this->Sums[i] - this->ValueSums[i]);
+          const double gradient =
+            2 * (this->C[i] * this->WeightSums(0, i) - this->WeightSums(1, i));
           const double w = tau > 0 ? std::max(this->W[i] - tau * gradient, 0.0) : this->W[i];
           this->NewW[i] = w;
-          this->Numerator[i] = w * this->C[i];
+          this->Pairs(0, i) = w * this->C[i];
+          this->Pairs(1, i) = w;
           partial = std::min(partial, w);
         }
       },
@@ -162,8 +167,7 @@ private:
     {
       return false;
     }
-    const double energy = this->Operator.coefficientSums(
-      this->Numerator, this->NewW, this->ResidualSums, this->RowSums);
+    const double energy = this->Operator.coefficientSums(this->Pairs, this->CoefficientSums);
     if (tau > 0 && energyRose(this->RowEnergy, energy, this->WeightSum, this->C, RoundingOfEnergy))
     {
       return false;
@@ -173,7 +177,7 @@ private:
     return true;
   }
 
-  RationalOperator<Dim> Operator;
+  const RationalOperator<Dim> Operator;
   const SolverOptions& Options;
   const double Tau;
   Vector& C;
@@ -181,9 +185,10 @@ private:
   OscillationTerm<Dim> Oscillation;
   const double WeightSum;
   double RowEnergy = 0, Mu = 0, SmallestTau = Infinity;
-  Vector W, NewW, Numerator;
-  Vector ResidualSums, RowSums; // RationalOperator::coefficientSums
-  Vector Sums, ValueSums;       // RationalOperator::weightSums
+  Vector W, NewW;
+  CoefficientPairs Pairs;           // w_i c_i and w_i
+  CoefficientPairs CoefficientSums; // RationalOperator::coefficientSums
+  CoefficientPairs WeightSums;      // RationalOperator::weightSums
 };
 }
 
