@@ -50,13 +50,13 @@ def leaf(count):
 
 
 def flower(count):
-    """For Examples 6, 8 and 11: seven petals."""
-    return _polar(count, lambda t: 1 + 0.32 * np.cos(7 * t))
+    """For Examples 6 and 11: nine petals."""
+    return _polar(count, lambda t: 1 + 0.45 * np.cos(9 * t))
 
 
 def splash(count):
-    """For Example 7: nine drops of two lengths."""
-    return _polar(count, lambda t: 1 + 0.27 * np.cos(9 * t) + 0.08 * np.cos(3 * t))
+    """For Examples 7 and 8: five drops around a thin middle."""
+    return _polar(count, lambda t: 1 + 0.6 * np.cos(5 * t))
 
 
 def _planar(x, y, normal_x, normal_y):
