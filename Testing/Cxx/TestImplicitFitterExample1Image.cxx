@@ -21,7 +21,7 @@ int TestImplicitFitterExample1Image(int argc, char* argv[])
   picture.Add(spline);
   picture.Add(ipiatest::NewPaperFitter(points, 9, 1e-2, 200));
   auto smooth = ipiatest::NewPaperFitter(points, 9, 1e-2, 200);
-  smooth->SetOscillationWeight(0.05);
+  smooth->SetOscillationWeight(0.002);
   smooth->SetOscillationStepToAsPrinted();
   picture.Add(smooth);
   return picture.Compare(argc, argv);

@@ -8,7 +8,7 @@ from ipia_2019.drawing import GREEN, INK, Sheet, curve_actor, points_actor
 from .examples import TABLE_1, TABLE_2, TABLE_3, TABLE_4, cloud
 from .fitting import fit
 
-TILE = (260, 260)
+TILE = (300, 300)
 LARGEST_COLOUR = 0.05  # five offset values
 STATES = (1, 10, 100, 1000)
 
@@ -30,7 +30,7 @@ def states_figure(lab):
     for line, row in enumerate(reversed(rows)):
         for column, count in enumerate(STATES):
             made = fit(points, row.settings.but(iterations=count, tolerance=0.0))
-            _tile(sheet, line, column, f"{row.label}, iteration {count}", points, made)
+            _tile(sheet, line, column, f"{row.label}, after {count}", points, made)
     return sheet
 
 
