@@ -20,8 +20,10 @@ from rational_2024.examples import NOISE, TABLES
 from rational_2024.fitting import MARGIN, OFFSET_DISTANCE, OFFSET_VALUE, TOLERANCE
 from rational_2024.laboratory import Laboratory
 from rational_2024.pictures import FIGURES
+from rational_2024.sheets import sheet_lines
 
 DEFAULT_OUTPUT = Path("ipia-output/paper-2024")
+SHEETS = "sheets"
 QUICK = ("example1", "fig15", *TABLES)
 
 SETTINGS = f"""\
@@ -40,10 +42,12 @@ def main():
     lab = Laboratory()
     print(SETTINGS)
     start = time.perf_counter()
-    for name in options.only or (QUICK if options.quick else (*TABLES, *FIGURES)):
+    for name in options.only or (QUICK if options.quick else (*TABLES, SHEETS, *FIGURES)):
         print(f"\n{name}")
         if name in TABLES:
             print("\n".join(lab.table_lines(TABLES[name])))
+        elif name == SHEETS:
+            print("\n".join(sheet_lines(lab)))
         else:
             path = options.output / f"{name}.png"
             path.unlink(missing_ok=True)
@@ -58,8 +62,8 @@ def main():
 
 def _parse_arguments():
     parser = argparse.ArgumentParser(description="Reproduces the paper on rational splines of 2024.")
-    parser.add_argument("--only", nargs="+", choices=[*TABLES, *FIGURES], metavar="NAME",
-                        help="what to make: " + ", ".join([*TABLES, *FIGURES]))
+    parser.add_argument("--only", nargs="+", choices=[*TABLES, SHEETS, *FIGURES], metavar="NAME",
+                        help="what to make: " + ", ".join([*TABLES, SHEETS, *FIGURES]))
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT,
                         help="folder of the pictures (default: %(default)s)")
     parser.add_argument("--quick", action="store_true",

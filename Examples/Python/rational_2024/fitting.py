@@ -8,7 +8,7 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-from ipia import vtkIPIAImplicitFitter
+from ipia import vtkIPIAImplicitFitter, vtkIPIAImplicitFunction
 
 # The paper gives no domain: the points' box and this margin, in units of its longest side.
 MARGIN = 0.1
@@ -18,7 +18,6 @@ TOLERANCE = 1e-7
 # Where the tolerance ends an iteration, and not the number of iterations.
 MOST_ITERATIONS = 100000
 SAMPLES_PER_SPACING = 8
-TOO_MANY = "diverges"
 
 
 @dataclass(frozen=True)
@@ -51,38 +50,45 @@ class Fit:
     oscillation: float
     smallest_weight: float
     largest_weight: float
+    largest_distance: float
     seconds: float
 
 
 def fit(cloud, settings):
     """Returns the fit, or the message of the refusal."""
-    fitter = vtkIPIAImplicitFitter()
+    fitter = new_fitter(cloud)
     errors = []
 
     def record(_caller, _event, text):
         errors.append(text.split("): ", 1)[-1].strip())
     record.CallDataType = vtk.VTK_STRING
     fitter.AddObserver("ErrorEvent", record)
-    fitter.AddObserver("WarningEvent", lambda *_: None)
-    fitter.SetInputData(cloud.polydata())
-    _apply(fitter, cloud, settings)
+    prepare(fitter, cloud, settings)
     start = time.perf_counter()
     fitter.Update()
     seconds = time.perf_counter() - start
     if errors:
         return errors[0]
     field = _spline_alone(fitter)
-    contour = _contour(field)
+    contour = contour_of(field)
     weights = fitter.GetOutputDataObject(2).GetPointData().GetArray("Weight")
     low, high = weights.GetRange() if weights else (1.0, 1.0)
-    return Fit(field=field, contour=contour, extra=_components(contour) - 1,
+    return Fit(field=field, contour=contour, extra=extra_loops(contour),
                iterations=fitter.GetNumberOfIterationsUsed(), energy=fitter.GetEnergy(),
                max_error=fitter.GetMaximumError(), average_error=fitter.GetAverageError(),
                oscillation=fitter.GetOscillation(), smallest_weight=low, largest_weight=high,
-               seconds=seconds)
+               largest_distance=largest_distance(fitter), seconds=seconds)
 
 
-def _apply(fitter, cloud, settings):
+def new_fitter(cloud):
+    """Nothing set; warnings (of regions with both signs around them) are not shown."""
+    fitter = vtkIPIAImplicitFitter()
+    fitter.AddObserver("WarningEvent", lambda *_: None)
+    fitter.SetInputData(cloud.polydata())
+    return fitter
+
+
+def apply_domain(fitter, cloud, settings):
     low, high = cloud.points.min(axis=0), cloud.points.max(axis=0)
     margin = MARGIN * (high - low).max()
     fitter.SetModelBounds(low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin, 0, 0)
@@ -90,6 +96,10 @@ def _apply(fitter, cloud, settings):
     samples = SAMPLES_PER_SPACING * (settings.grid - 3) + 1
     fitter.SetSampleDimensions(samples, samples, 0)
     fitter.SetOutputScalarTypeToDouble()
+
+
+def prepare(fitter, cloud, settings):
+    apply_domain(fitter, cloud, settings)
     fitter.SetNumberOfLevels(1)
     fitter.SetNormalConstraintToTwoSidedOffset()
     fitter.SetOffsetDistance(OFFSET_DISTANCE)
@@ -108,7 +118,6 @@ def _apply(fitter, cloud, settings):
 
 def _spline_alone(fitter):
     """The image of f without the far field, by a control lattice without it."""
-    from ipia import vtkIPIAImplicitFunction
     lattice = vtk.vtkImageData()
     lattice.ShallowCopy(fitter.GetOutputDataObject(2))
     lattice.GetFieldData().Initialize()
@@ -128,7 +137,7 @@ def _spline_alone(fitter):
     return image
 
 
-def _contour(field):
+def contour_of(field):
     contour = vtk.vtkFlyingEdges2D()
     contour.SetInputData(field)
     contour.SetValue(0, 0.0)
@@ -136,9 +145,15 @@ def _contour(field):
     return contour.GetOutput()
 
 
-def _components(contour):
+def extra_loops(contour):
     components = vtk.vtkPolyDataConnectivityFilter()
     components.SetInputData(contour)
     components.SetExtractionModeToAllRegions()
     components.Update()
-    return components.GetNumberOfExtractedRegions()
+    return components.GetNumberOfExtractedRegions() - 1
+
+
+def largest_distance(fitter):
+    """The largest distance of a point from the curve, to first order: |f| / |grad f|."""
+    distances = fitter.GetOutputDataObject(1).GetPointData().GetArray("Distance")
+    return np.abs(vtk_to_numpy(distances)).max()
