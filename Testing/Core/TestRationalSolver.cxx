@@ -403,7 +403,7 @@ TYPED_TEST(RationalSolver, TheEnergyStepConvergesForAnyWeight)
     }
     SolverOptions options = iterations(100000, oscillation);
     options.Rule = StoppingRule::EnergyChange;
-    options.Tolerance = 1e-6;
+    options.Tolerance = 1e-5;
     Vector c = Vector::Zero(problem.B.cols());
     EXPECT_LT(solveRational(rows, options, { 0.05 }, 1, c).Solver.NumberOfIterations, 100000);
 
