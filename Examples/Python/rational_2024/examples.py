@@ -24,13 +24,13 @@ class Published:
 
 @dataclass(frozen=True)
 class Row:
-    """One fit of an example. extra: whether the paper's picture has extra loops."""
+    """One fit of an example. clean: the paper's picture has no extra loops."""
 
     example: int
     label: str
     settings: Settings
     paper: Published
-    clean: bool = None
+    clean: bool = False
 
 
 SHAPES = {1: (outlines.example_1, 120), 2: (outlines.pear, 193), 3: (outlines.clover, 289),

@@ -37,8 +37,10 @@ class Settings:
 
 @dataclass(frozen=True)
 class Fit:
-    """extra: closed loops and open lines of f = 0 beside the one nearest to the points, of the spline
-    alone, without the filter's far field."""
+    """
+    field and contour are of the spline alone, without the filter's far field; extra are the loops
+    and open lines of f = 0 beside one.
+    """
 
     field: vtk.vtkImageData
     contour: vtk.vtkPolyData
