@@ -21,9 +21,10 @@ from rational_2024.fitting import MARGIN, OFFSET_DISTANCE, OFFSET_VALUE, TOLERAN
 from rational_2024.laboratory import Laboratory
 from rational_2024.pictures import FIGURES
 from rational_2024.sheets import sheet_lines
+from rational_2024.steps import step_lines
 
 DEFAULT_OUTPUT = Path("ipia-output/paper-2024")
-SHEETS = "sheets"
+COMPARISONS = {"tau": step_lines, "sheets": sheet_lines}
 QUICK = ("example1", "fig15", *TABLES)
 
 SETTINGS = f"""\
@@ -42,12 +43,12 @@ def main():
     lab = Laboratory()
     print(SETTINGS)
     start = time.perf_counter()
-    for name in options.only or (QUICK if options.quick else (*TABLES, SHEETS, *FIGURES)):
+    for name in options.only or (QUICK if options.quick else (*TABLES, *COMPARISONS, *FIGURES)):
         print(f"\n{name}")
         if name in TABLES:
             print("\n".join(lab.table_lines(TABLES[name])))
-        elif name == SHEETS:
-            print("\n".join(sheet_lines(lab)))
+        elif name in COMPARISONS:
+            print("\n".join(COMPARISONS[name](lab)))
         else:
             path = options.output / f"{name}.png"
             path.unlink(missing_ok=True)
@@ -62,8 +63,8 @@ def main():
 
 def _parse_arguments():
     parser = argparse.ArgumentParser(description="Reproduces the paper on rational splines of 2024.")
-    parser.add_argument("--only", nargs="+", choices=[*TABLES, SHEETS, *FIGURES], metavar="NAME",
-                        help="what to make: " + ", ".join([*TABLES, SHEETS, *FIGURES]))
+    parser.add_argument("--only", nargs="+", choices=[*TABLES, *COMPARISONS, *FIGURES], metavar="NAME",
+                        help="what to make: " + ", ".join([*TABLES, *COMPARISONS, *FIGURES]))
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT,
                         help="folder of the pictures (default: %(default)s)")
     parser.add_argument("--quick", action="store_true",
