@@ -260,11 +260,16 @@ void FairingSystem::apply(
   const std::int64_t n = this->Axes[0].size(), rows = this->Axes[1].size();
   const std::int64_t tasks = rows * x.cols();
   const int q = this->Axes[1].degree();
-  fitting.setZero(x.rows(), x.cols());
-  fairing.setZero(x.rows(), x.cols());
+  fitting.resize(x.rows(), x.cols());
+  fairing.resize(x.rows(), x.cols());
   // Along the first axis, then across it; every row belongs to one thread.
   const std::size_t matrices = this->Terms.size() + (this->Gridded ? 1 : 0);
-  std::vector<Eigen::MatrixXd> along(matrices, Eigen::MatrixXd(x.rows(), x.cols()));
+  std::vector<Eigen::MatrixXd>& along = this->Along;
+  along.resize(matrices);
+  for (Eigen::MatrixXd& product : along)
+  {
+    product.resize(x.rows(), x.cols());
+  }
 #pragma omp parallel num_threads(this->Threads)
   {
 #pragma omp for schedule(static)
@@ -283,6 +288,8 @@ void FairingSystem::apply(
     {
       const std::int64_t row = task % rows;
       const Eigen::Index c = task / rows;
+      std::fill_n(fitting.data() + task * n, n, 0.0);
+      std::fill_n(fairing.data() + task * n, n, 0.0);
       for (std::size_t k = 0; k < this->Terms.size(); ++k)
       {
         this->addAcross(this->Terms[k].Along[1], this->Terms[k].Factor, along[k], row, c, fairing);

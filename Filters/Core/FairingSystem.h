@@ -57,7 +57,7 @@ public:
   /// N^T Q, size() by 3.
   const Eigen::MatrixXd& rightHandSide() const { return this->DataSide; }
 
-  /// N^T N @a x and D @a x, size() by 3.
+  /// N^T N @a x and D @a x, size() by 3. Not to be called from two threads at once.
   void apply(const Eigen::MatrixXd& x, Eigen::MatrixXd& fitting, Eigen::MatrixXd& fairing) const;
 
   /**
@@ -111,6 +111,7 @@ private:
   std::vector<BandMatrix> Blocks;
   std::vector<EnergyTerm> Terms;
   Eigen::MatrixXd DataSide;
+  mutable std::vector<Eigen::MatrixXd> Along; ///< kept, as it is needed in every iteration
 };
 
 /// Q - N P at the data, m by 3.
