@@ -9,7 +9,7 @@ from ipia_2019.cloud import points_polydata
 from ipia_2019.drawing import BLUE, GREEN, INK, RED, curve_actor
 
 COMB = (0.45, 0.65, 0.9)
-STRIPES = 14  # zebra stripes over the half sphere of normals
+STRIPES = 8  # zebra stripes over the half sphere of normals
 EYE = np.array((0.35, -0.5, 0.8))  # the direction to the light of the stripes
 HISTORY_COLOURS = {"iteration error": BLUE, "fitting error": RED, "energy": GREEN}
 
@@ -41,9 +41,14 @@ def segments(begin, end, colour):
     return actor
 
 
-def comb_actors(made, scale, red_box=None):
-    """A curve with its curvature comb, away from the centre of curvature; what red_box holds is red."""
-    ends = made.points - scale * made.array("CurvatureNormal")
+def comb_actors(made, scale, red_box=None, longest=np.inf):
+    """
+    A curve with its curvature comb, away from the centre of curvature and cut at a longest length; what
+    red_box holds is red.
+    """
+    teeth = scale * made.array("CurvatureNormal")
+    lengths = np.maximum(np.linalg.norm(teeth, axis=1, keepdims=True), 1e-300)
+    ends = made.points - teeth * np.minimum(1, longest / lengths)
     actors = [segments(made.points, ends, COMB), polyline(ends, COMB, 1),
               polyline(made.points, INK)]
     if red_box is not None:

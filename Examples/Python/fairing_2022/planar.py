@@ -3,21 +3,26 @@
 
 import numpy as np
 
-from ipia_2019.drawing import BLUE, Sheet, points_actor
+from ipia_2019.drawing import BLUE, Sheet, View, points_actor
 
 from . import curves
 from .fairing import TOLERANCE, fair_curve
 from .pictures import comb_actors, history_actors
 
 TILE = (420, 380)
+AIRFOIL_TILE = (620, 270)
 SAMPLES = 1501
+# The same for all rounds, so that they can be compared.
+NOTE_VIEW = View(centre=(2.5, 3.2, 0), half_height=4.6)
+AIRFOIL_VIEW = View(centre=(0.5, 0.04, 0), half_height=0.26)
+STARFISH_VIEW = View(centre=(0, 0, 0), half_height=1.75)
 
 # Equal weights of the fitting curve and of the energy minimisation; the paper's were lost.
 FITTING = 1e-10
 NOTE_WEIGHT, NOTE_RAISED = 1e-8, 1e-6
-NOTE_SEGMENT = range(30, 46)
+NOTE_SEGMENT = range(40, 50)
 
-AIRFOIL_RAISED = 1e-5
+AIRFOIL_RAISED = (1e-5, 1e-8, 1e-5)
 # Lower rear, nose, upper rear: control points, as the paper goes about it.
 AIRFOIL_SEGMENTS = (range(16, 23), range(9, 16), range(2, 9))
 
@@ -52,14 +57,14 @@ def data_start(made, points):
 
 
 def airfoil_rounds():
-    """The fit, and after it one round for each segment, all others staying as they are."""
+    """The fit, and after it one round for each segment, whose weights then stay raised."""
     points = curves.airfoil()
     n = curves.AIRFOIL_CONTROLS
     common = {"samples": SAMPLES}
     rounds = [fair_curve(points, weights=FITTING, direct=True, controls=n, **common)]
     weights = np.full(n, FITTING)
-    for segment in AIRFOIL_SEGMENTS:
-        weights[segment] = AIRFOIL_RAISED
+    for segment, raised in zip(AIRFOIL_SEGMENTS, AIRFOIL_RAISED):
+        weights[segment] = raised
         rounds.append(fair_curve(points, weights=weights, start=rounds[-1], **common))
     return points, rounds
 
@@ -106,7 +111,7 @@ def figure_1(lab):
     for column, (title, made) in enumerate((("fitting curve", fit), ("energy minimisation", energy),
                                             ("fairing-PIA", pia))):
         sheet.tile(0, column, f"{title}: E_fit {made.fitting_error:.4f}, energy {made.energy:.3g}",
-                   [*comb_actors(made, 0.12, box), points_actor(points, BLUE, 2)])
+                   [*comb_actors(made, 0.3, box, 1.2), points_actor(points, BLUE, 2)], NOTE_VIEW)
         lab.record(f"Note, {title}", made)
     lab.expect("Note: the segment is fairer by fairing-PIA than by energy minimisation",
                roughness(pia, box[0]) < 0.7 * roughness(energy, box[0]))
@@ -115,12 +120,12 @@ def figure_1(lab):
 
 def figure_2(lab):
     points, rounds = lab.rounds("airfoil", airfoil_rounds)
-    sheet = Sheet(2, 2, (560, 300))
+    sheet = Sheet(2, 2, AIRFOIL_TILE)
     titles = ("fitting curve", "lower rear", "nose as well", "upper rear as well")
     for k, (title, made) in enumerate(zip(titles, rounds)):
         box = supports(made, AIRFOIL_SEGMENTS[max(k - 1, 0):k])
         sheet.tile(k // 2, k % 2, f"{title}: E_fit {made.fitting_error:.5f}, energy {made.energy:.4g}",
-                   [*comb_actors(made, 0.004, box), points_actor(points, BLUE, 3)])
+                   [*comb_actors(made, 0.05, box, 0.12), points_actor(points, BLUE, 3)], AIRFOIL_VIEW)
         lab.record(f"Airfoil, {title}", made)
     lab.expect("Airfoil: every segment lowers the energy",
                all(a.energy > b.energy for a, b in zip(rounds, rounds[1:])))
@@ -135,7 +140,7 @@ def figure_3(lab):
              ("second round", second))
     for k, (title, made) in enumerate(tiles):
         sheet.tile(k // 2, k % 2, f"{title}: E_fit {made.fitting_error:.4f}, energy {made.energy:.4g}",
-                   [*comb_actors(made, 0.05, box), points_actor(points, BLUE, 4)])
+                   [*comb_actors(made, 0.05, box), points_actor(points, BLUE, 4)], STARFISH_VIEW)
         lab.record(f"Starfish, {title}", made)
     lab.expect("Starfish: knot insertion leaves the curve as it is",
                np.abs(first.points - refined.points).max() < 1e-12)

@@ -47,7 +47,7 @@ def tooth(quick):
     fissures = 0.12 * (np.exp(-(x / 0.1)**2) * (np.abs(y) < 0.6)
                        + np.exp(-(y / 0.1)**2) * (np.abs(x) < 0.6))
     return Model("Tooth", "molar crown, generated", size, controls,
-                 _field(x, y, dome + cusps - fissures, 0.006, "tooth"), 1e-7, 1e-4,
+                 _field(x, y, dome + cusps - fissures, 0.003, "tooth"), 1e-5, 1e-3,
                  ((0, 1, 0, 0.22), (0, 1, 0.78, 1), (0, 0.22, 0, 1), (0.78, 1, 0, 1)))
 
 
@@ -55,11 +55,11 @@ def fan_disk(quick):
     """A machined part: a plateau with a sharp rim, a ramp and a round pocket."""
     size, controls = ((40, 40), (20, 20)) if quick else ((100, 100), (45, 45))
     x, y = _plane(size)
-    plateau = 0.5 * _ramp(0.7 - np.hypot(x, y), 0.12)
-    ramp = 0.3 * np.clip(x + 0.2, 0, 0.8) * (np.hypot(x, y) < 0.62)
-    pocket = 0.3 * _ramp(0.2 - np.hypot(x + 0.25, y), 0.08)
+    plateau = 0.5 * _ramp(0.75 - np.hypot(x, y), 0.2)
+    ramp = 0.3 * np.clip(x + 0.2, 0, 0.8) * _ramp(0.62 - np.hypot(x, y), 0.15)
+    pocket = 0.3 * _ramp(0.3 - np.hypot(x + 0.2, y), 0.2)
     return Model("Fan_disk", "machined disk, generated", size, controls,
-                 _field(x, y, plateau + ramp - pocket, 0.006, "fan disk"), 1e-7, 1e-4,
+                 _field(x, y, plateau + ramp - pocket, 0.003, "fan disk"), 3e-6, 1e-3,
                  ((0, 0.14, 0, 1), (0.86, 1, 0, 1), (0.55, 0.75, 0.3, 0.7)))
 
 
@@ -76,8 +76,8 @@ def mannequin(quick):
     r = np.hypot((x - 0.8) / 0.14, (y - 0.1) / 0.28)
     ear = 0.12 * np.exp(-((r - 1) / 0.25)**2) + 0.05 * np.cos(18 * r) * np.exp(-(r / 0.9)**2)
     return Model("Mannequin", "face in relief, generated", size, controls,
-                 _field(x, y, head + nose - eyes + mouth + ear, 0.003, "mannequin"), 3e-7, 1e-4,
-                 ((0.8, 1.0, 0.36, 0.74),), 1e-9, ((0.3, 0.7, 0.15, 0.32),))
+                 _field(x, y, head + nose - eyes + mouth + ear, 0.001, "mannequin"), 3e-6, 1e-4,
+                 ((0.8, 1.0, 0.36, 0.74),), 1e-8, ((0.3, 0.7, 0.15, 0.32),))
 
 
 MODELS = (tooth, fan_disk, mannequin)

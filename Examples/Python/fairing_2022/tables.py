@@ -14,7 +14,7 @@ PAPER_1 = {  # data points, control points, iterations, seconds of energy minimi
     "Starfish (first round)": ("100", "34", "23", "0.02133"),
     "Tooth": ("-", "-", "248", "39.3429"),
     "Fan_disk": ("-", "-", "85", "7.4511"),
-    "Mannequin": ("-", "-", "143", "1560.6648"),
+    "Mannequin": ("-", "-", "143 or 6", "1560.6648"),  # the text has both and does not tell which
 }
 PAPER_2 = {  # initial fitting error and energy
     "Note": ("0.01074", "90438.9606"),
