@@ -84,22 +84,21 @@ private:
       });
   }
 
-  /// Calls body(row, coordinate, index in column-major order) for all entries.
+  /// Calls body(row, coordinate) for all entries.
   template <typename Body>
   void forEach(const Body& body) const
   {
-    const std::int64_t n = this->System.size();
-    for (Eigen::Index c = 0; c < 3; ++c)
-    {
-      parallelChunks(n, this->System.threads(),
-        [&](std::int64_t begin, std::int64_t end)
+    parallelChunks(this->System.size(), this->System.threads(),
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (Eigen::Index c = 0; c < 3; ++c)
         {
           for (std::int64_t j = begin; j < end; ++j)
           {
             body(j, c);
           }
-        });
-    }
+        }
+      });
   }
 
   /// (I - Omega) N^T (Q - N P) - Omega D P of the control points that move.
