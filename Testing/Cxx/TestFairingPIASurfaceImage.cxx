@@ -27,6 +27,5 @@ int TestFairingPIASurfaceImage(int argc, char* argv[])
   net->SetLineWidth(1);
   net->LightingOff();
   picture.LookFrom(0.3, -1, 1.2, 0, 0, 1);
-  picture.Renderer->GetActiveCamera()->Zoom(1.3);
   return picture.Compare(argc, argv);
 }

@@ -42,6 +42,7 @@ class TestFairingPIAInPython(Testing.vtkTest):
     def test_curve(self):
         fair = vtkFairingPIACurveFilter()
         fair.SetInputData(circle())
+        fair.SetNumberOfControlPoints(60)
         fair.SetFairingWeight(1e-10)
         fair.SetSampleDimensions(500)
         fair.Update()
