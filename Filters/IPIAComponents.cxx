@@ -17,6 +17,9 @@ namespace
 {
 /// A component stays if it has this share of the data points that its size makes one expect.
 constexpr double LeastShareOfData = 0.02;
+/// And at least so many, of a hundred times as many in all: what a blob of the size of one basis
+/// function's slope, two and a half knot spacings, carries.
+constexpr double LeastData = 24;
 
 /// Calls action(number of points, point ids) for every cell of an array.
 template <typename Action>
@@ -187,13 +190,14 @@ int leaveOutComponents(vtkPolyData* surface, const std::vector<vtkIdType>& compo
   }
   const auto largest = std::max_element(vertices.begin(), vertices.end()) - vertices.begin();
   const double perVertex = static_cast<double>(data.size()) / static_cast<double>(component.size());
+  const double least = std::min(LeastData, static_cast<double>(data.size()) / 100);
   std::vector<char> stays(vertices.size(), 1);
   for (std::size_t k = 0; k < stays.size(); ++k)
   {
     const double expected = perVertex * static_cast<double>(vertices[k]);
     stays[k] = static_cast<std::ptrdiff_t>(k) == largest ||
       dataOf(surface, component, static_cast<vtkIdType>(k), extents[k], data, reach) >=
-        LeastShareOfData * expected;
+        std::max(LeastShareOfData * expected, least);
   }
   const auto leftOut = static_cast<int>(std::count(stays.begin(), stays.end(), 0));
   if (leftOut > 0)

@@ -38,9 +38,9 @@ private:
 std::vector<vtkIdType> componentsOf(vtkPolyData* surface);
 
 /**
- * Leaves out components that hardly any data point is nearest to: fewer than a fiftieth of what
- * their share of the vertices would make one expect. The largest stays. Points that no cell uses
- * are left out with them.
+ * Leaves out components that hardly any data point is nearest to: fewer than 24 (than a hundredth
+ * of all, if that is less), or fewer than a fiftieth of what their share of the vertices would make
+ * one expect. The largest stays. Points that no cell uses are left out with them.
  *
  * @param component  of each point of the surface
  * @param reach      data farther than this from a component are not its data

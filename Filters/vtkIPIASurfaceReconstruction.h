@@ -63,8 +63,9 @@ public:
 
   ///@{
   /**
-   * Leave out components that hardly any data point is nearest to: fewer than a fiftieth of what
-   * their share of the vertices would make one expect. The largest stays. Default on.
+   * Leave out components that hardly any data point is nearest to: fewer than 24 (than a hundredth
+   * of all, if that is less), or fewer than a fiftieth of what their share of the vertices would
+   * make one expect. The largest stays. Default on.
    */
   vtkSetMacro(ComponentFilter, bool);
   vtkGetMacro(ComponentFilter, bool);

@@ -21,6 +21,9 @@ constexpr int CoarsestIterationsPerCell = 4;
 constexpr double UnitDensity = 151. / 315;
 /// The scale of residuals is at least this many knot spacings.
 constexpr double LeastScale = 0.1;
+/// A row counts in full where the coarser prediction rises by at least this share of the slope that
+/// its normal asks for, and in proportion below, down to a limit.
+constexpr double FullSlope = 0.7, LeastTrustInThinParts = 0.1;
 /// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
 constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
 
@@ -90,14 +93,30 @@ double median(std::vector<float> values)
   return *middle;
 }
 
+/// How far the prediction's slope along the normal of a row is what the row asks for; low on parts
+/// too thin for the lattice, where the rows of both sides contradict each other.
+template <int Dim>
+double trustInSlope(const HermiteRow<Dim>& row, const float* predictedGradient)
+{
+  double along = 0, full = 0;
+  for (int a = 0; a < Dim; ++a)
+  {
+    along += static_cast<double>(row.Slope[a]) * predictedGradient[a];
+    full += static_cast<double>(row.Slope[a]) * row.Slope[a];
+  }
+  const double slope = full > 0 ? along / full : 1.0;
+  return std::min(std::max(slope / FullSlope, LeastTrustInThinParts), 1.0);
+}
+
 /// Scales the weights so that the rows of an occupied cell weigh about 1 in all, and takes weight
-/// from rows that the coarser prediction misses by far and where the fairing is to count more.
+/// from rows that the coarser prediction misses by far, from those of parts too thin for the
+/// lattice, which the fairing is to hold together, and where the fairing is to count more.
 template <int Dim>
 void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, HermiteRows<Dim>& rows,
   bool predicted, const HierarchicalOptions& options, int threads)
 {
   const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
-  std::vector<float> sums, density, prediction;
+  std::vector<float> sums, density;
   collocation.density(sums);
   collocation.evaluate(sums, density);
   const auto n = static_cast<std::int64_t>(rows.Rows.size());
@@ -121,15 +140,21 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
     [](const HermiteRow<Dim>& row, double relative) { return row.Weight * std::log(relative); });
   const double typical = total > 0 ? std::exp(logarithms / total) : 1.0;
 
+  // f and its gradient, in knot spacings, by the coarser level.
+  constexpr std::size_t stride = 1 + Dim;
+  std::vector<float> prediction;
   double scale = 0;
+  if (predicted)
+  {
+    collocation.evaluateWithGradient(bricks.coefficients(), prediction);
+  }
   if (predicted && options.RobustFactor > 0)
   {
-    collocation.evaluate(bricks.coefficients(), prediction);
-    std::vector<float> misses(prediction.size());
+    std::vector<float> misses(rows.Rows.size());
     for (const HermiteRow<Dim>& row : rows.Rows)
     {
       const auto k = static_cast<std::size_t>(row.Source);
-      misses[k] = prediction[k] = std::abs(prediction[k] - row.Value);
+      misses[k] = std::abs(prediction[k * stride] - row.Value);
     }
     scale = options.RobustFactor *
       std::max(1.4826 * median(std::move(misses)), LeastScale * bricks.lattice().Spacing.mean());
@@ -137,11 +162,17 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
   const auto weigh = [&](HermiteRow<Dim>& row)
   {
     double factor = 1 / typical;
+    const float* const at =
+      predicted ? &prediction[static_cast<std::size_t>(row.Source) * stride] : nullptr;
     if (scale > 0)
     {
-      const double miss = prediction[static_cast<std::size_t>(row.Source)] / scale;
+      const double miss = (at[0] - row.Value) / scale;
       const double trust = 1 / (1 + miss * miss);
       factor *= trust * trust;
+    }
+    if (predicted && !level.Dense && row.GradientWeight > 0)
+    {
+      factor *= trustInSlope<Dim>(row, at + 1);
     }
     factor /= level.Data[static_cast<std::size_t>(row.Source)].Fairing;
     row.Weight *= static_cast<float>(factor);

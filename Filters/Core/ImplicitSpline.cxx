@@ -8,7 +8,6 @@
 
 #include <atomic>
 #include <cstring>
-#include <iterator>
 
 namespace ipia
 {
@@ -177,72 +176,20 @@ struct SampleGrid
     }
   }
 
-  bool hasSpline(std::size_t row) const
+  /// The samples of a row from the first to the last where the spline counts, [begin, end).
+  Run splineSpan(std::size_t row) const
   {
-    const std::size_t begin = this->RunBegin[row];
-    return this->RunBegin[row + 1] > begin + 1 || this->Runs[begin].Sign == 0;
-  }
-
-  /// The runs of samples along x where the spline counts in any of the rows z to endZ at @a y, at
-  /// most GroupSize; these share a knot cell along z, but not always a box.
-  void findSplineRuns(
-    std::int64_t y, std::int64_t z, std::int64_t endZ, std::vector<Run>& found) const
-  {
-    found.clear();
-    if (endZ - z == 1 || this->boxRow(y, z) == this->boxRow(y, endZ - 1))
+    std::size_t first = this->RunBegin[row], last = this->RunBegin[row + 1];
+    while (first < last && this->Runs[first].Sign != 0)
     {
-      const std::size_t row = this->boxRow(y, z);
-      std::copy_if(this->Runs.begin() + static_cast<std::ptrdiff_t>(this->RunBegin[row]),
-        this->Runs.begin() + static_cast<std::ptrdiff_t>(this->RunBegin[row + 1]),
-        std::back_inserter(found), [](const Run& run) { return run.Sign == 0; });
-      return;
+      ++first;
     }
-    std::array<std::size_t, GroupSize> next{}, last{};
-    std::size_t rows = 0;
-    for (std::int64_t k = z; k < endZ; ++k)
+    while (first < last && this->Runs[last - 1].Sign != 0)
     {
-      const std::size_t row = this->boxRow(y, k);
-      if (this->hasSpline(row) && (rows == 0 || this->RunBegin[row + 1] != last[rows - 1]))
-      {
-        next[rows] = this->RunBegin[row];
-        last[rows++] = this->RunBegin[row + 1];
-      }
+      --last;
     }
-    const auto skipFar = [&](std::size_t i)
-    {
-      while (next[i] < last[i] && this->Runs[next[i]].Sign != 0)
-      {
-        ++next[i];
-      }
-      return next[i] < last[i];
-    };
-    while (rows > 0)
-    {
-      std::int64_t begin = this->X.size();
-      for (std::size_t i = 0; i < rows; ++i)
-      {
-        begin = skipFar(i) ? std::min(begin, this->Runs[next[i]].Begin) : begin;
-      }
-      if (begin == this->X.size())
-      {
-        return;
-      }
-      // The run grows by all that it meets.
-      std::int64_t end = begin;
-      for (bool grown = true; grown;)
-      {
-        grown = false;
-        for (std::size_t i = 0; i < rows; ++i)
-        {
-          if (skipFar(i) && this->Runs[next[i]].Begin <= end)
-          {
-            end = std::max(end, this->Runs[next[i]++].End);
-            grown = true;
-          }
-        }
-      }
-      found.push_back({ begin, end, 0 });
-    }
+    return first < last ? Run{ this->Runs[first].Begin, this->Runs[last - 1].End, 0 }
+                        : Run{ this->X.size(), 0, 0 };
   }
 };
 
@@ -255,12 +202,16 @@ struct SampleKernel
 {
   using Grid = SampleGrid<Dim>;
 
-  /// The end of the group that begins with sample @a i: up to GroupSize of one cell.
-  static std::int64_t groupEnd(const AxisTable& table, std::int64_t i, std::int64_t last)
+  /// The end of the group that begins with sample @a i: up to GroupSize of one cell, and on
+  /// request one box.
+  static std::int64_t groupEnd(
+    const AxisTable& table, std::int64_t i, std::int64_t last, bool oneBox = false)
   {
-    const std::int64_t cell = table.Cell[static_cast<std::size_t>(i)];
+    const auto at = [](const std::vector<std::int64_t>& v, std::int64_t k)
+    { return v[static_cast<std::size_t>(k)]; };
     std::int64_t end = i + 1;
-    while (end < std::min(last, i + GroupSize) && table.Cell[static_cast<std::size_t>(end)] == cell)
+    while (end < std::min(last, i + GroupSize) && at(table.Cell, end) == at(table.Cell, i) &&
+      (!oneBox || at(table.Box, end) == at(table.Box, i)))
     {
       ++end;
     }
@@ -300,9 +251,25 @@ struct SampleKernel
     const BasisValues* weights, std::int64_t begin, std::int64_t end, Out* out, std::int64_t stride)
   {
     Vector8 v[Terms], sum;
-    std::int64_t x = begin;
-    for (; x + Lanes <= end; x += Lanes)
+    if (end - begin < Lanes)
     {
+      std::array<Out, Lanes> lanes;
+      for (std::size_t k = 0; k < Terms; ++k)
+      {
+        load(in[k] + begin, v[k]);
+      }
+      for (int i = 0; i < Count; ++i)
+      {
+        combine(weights[i].data(), v, sum);
+        store(sum, lanes.data());
+        std::copy(lanes.begin(), lanes.begin() + (end - begin), out + i * stride + begin);
+      }
+      return;
+    }
+    for (std::int64_t next = begin; next < end; next += Lanes)
+    {
+      // The last vector may overlap the one before, with the same values.
+      const std::int64_t x = std::min(next, end - Lanes);
       for (std::size_t k = 0; k < Terms; ++k)
       {
         load(in[k] + x, v[k]);
@@ -311,20 +278,6 @@ struct SampleKernel
       {
         combine(weights[i].data(), v, sum);
         store(sum, out + i * stride + x);
-      }
-    }
-    if (x < end)
-    {
-      std::array<Out, Lanes> lanes;
-      for (std::size_t k = 0; k < Terms; ++k)
-      {
-        load(in[k] + x, v[k]);
-      }
-      for (int i = 0; i < Count; ++i)
-      {
-        combine(weights[i].data(), v, sum);
-        store(sum, lanes.data());
-        std::copy(lanes.begin(), lanes.begin() + (end - x), out + i * stride + x);
       }
     }
   }
@@ -351,10 +304,14 @@ struct SampleKernel
     }
   }
 
-  /// Slice k of the coefficients, expanded to the samples of the block along x and y.
+  /// Slice k of the coefficients, expanded to the samples of the block along x and y, in whole
+  /// vectors that cover [beginX, endX) along x.
   static IPIA_INLINE void expandSlice(const Grid& grid, const SampleBlock& block,
-    std::int64_t slice, std::vector<double>& alongX, double* expanded)
+    std::int64_t slice, std::int64_t beginX, std::int64_t endX, std::vector<double>& alongX,
+    double* expanded)
   {
+    beginX = beginX / Lanes * Lanes;
+    endX = (endX + Lanes - 1) / Lanes * Lanes;
     const std::int64_t n = paddedRow(grid);
     const std::int64_t firstRow = grid.Y.Cell[static_cast<std::size_t>(block.FirstY)];
     const std::int64_t lastRow = grid.Y.Cell[static_cast<std::size_t>(block.LastY - 1)] + Order;
@@ -368,6 +325,10 @@ struct SampleKernel
     Vector8 v[Order], sum;
     for (const SampleRow::CellRun& run : grid.Row.Cells)
     {
+      if (run.End <= beginX || run.Begin >= endX)
+      {
+        continue;
+      }
       const double* c = grid.Coefficients + (slice * size[1] + firstRow) * size[0] + run.Cell;
       for (std::int64_t x = run.Begin; x < run.End; x += Lanes)
       {
@@ -395,78 +356,137 @@ struct SampleKernel
           (grid.Y.Cell[static_cast<std::size_t>(y)] - firstRow + static_cast<std::int64_t>(j)) * n;
       }
       combineGroup(
-        next - y, in, grid.Y.Weight.data() + y, 0, n, expanded + (y - block.FirstY) * n, n);
+        next - y, in, grid.Y.Weight.data() + y, beginX, endX, expanded + (y - block.FirstY) * n, n);
     }
+  }
+
+  /// The samples along x that the spline is asked for, by knot cells of z from the block's first.
+  static std::vector<typename Grid::Run> splineSpans(const Grid& grid, const SampleBlock& block)
+  {
+    const auto cellOf = [&](std::int64_t z) { return grid.Z.Cell[static_cast<std::size_t>(z)]; };
+    const std::int64_t firstCell = cellOf(block.FirstZ);
+    std::vector<typename Grid::Run> spans(
+      static_cast<std::size_t>(cellOf(block.LastZ - 1) - firstCell + 1), { grid.X.size(), 0, 0 });
+    const bool far = !grid.Far.Sign.empty();
+    std::int64_t next = block.FirstZ;
+    for (std::int64_t z = block.FirstZ; z < block.LastZ; z = next)
+    {
+      next = groupEnd(grid.Z, z, block.LastZ, far);
+      auto& span = spans[static_cast<std::size_t>(cellOf(z) - firstCell)];
+      for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
+      {
+        const auto ofRow = grid.splineSpan(grid.boxRow(y, z));
+        span.Begin = std::min(span.Begin, ofRow.Begin);
+        span.End = std::max(span.End, ofRow.End);
+      }
+    }
+    return spans;
   }
 
   static IPIA_INLINE void run(const Grid& grid, const SampleBlock& block, Scalar* values)
   {
     const std::int64_t n = grid.X.size(), rows = grid.Y.size(), padded = paddedRow(grid);
     const std::int64_t sliceSize = (block.LastY - block.FirstY) * padded;
+    const std::int64_t firstCell = grid.Z.Cell[static_cast<std::size_t>(block.FirstZ)];
+    const std::vector<typename Grid::Run> spans = splineSpans(grid, block);
     std::vector<double> alongX, window(static_cast<std::size_t>(Grid::Slices * sliceSize));
     std::array<std::int64_t, Grid::Slices> held;
     held.fill(-1);
-    const bool splineOnly = grid.Far.Sign.empty();
-    std::vector<typename Grid::Run> runs(1, { 0, n, 0 });
+    const bool far = !grid.Far.Sign.empty();
     std::int64_t next = block.FirstZ;
     for (std::int64_t z = block.FirstZ; z < block.LastZ; z = next)
     {
       const std::int64_t cell = grid.Z.Cell[static_cast<std::size_t>(z)];
-      next = groupEnd(grid.Z, z, block.LastZ);
-      bool spline = splineOnly;
-      for (std::int64_t y = block.FirstY; y < block.LastY && !spline; ++y)
+      next = groupEnd(grid.Z, z, block.LastZ, far);
+      if (spans[static_cast<std::size_t>(cell - firstCell)].End == 0)
       {
-        for (std::int64_t k = z; k < next && !spline; ++k)
-        {
-          spline = grid.hasSpline(grid.boxRow(y, k));
-        }
+        continue;
       }
       std::array<const double*, Grid::Slices> slices{};
-      for (std::int64_t k = 0; k < Grid::Slices && spline; ++k)
+      for (std::int64_t k = 0; k < Grid::Slices; ++k)
       {
         const auto slot = static_cast<std::size_t>((cell + k) % Grid::Slices);
         double* expanded = window.data() + static_cast<std::int64_t>(slot) * sliceSize;
         if (held[slot] != cell + k)
         {
-          expandSlice(grid, block, cell + k, alongX, expanded);
+          // The cells from this one on that the slice reaches.
+          auto span = spans[static_cast<std::size_t>(cell - firstCell)];
+          const auto last = std::min<std::int64_t>(
+            cell - firstCell + k, static_cast<std::int64_t>(spans.size()) - 1);
+          for (std::int64_t c = cell - firstCell + 1; c <= last; ++c)
+          {
+            span.Begin = std::min(span.Begin, spans[static_cast<std::size_t>(c)].Begin);
+            span.End = std::max(span.End, spans[static_cast<std::size_t>(c)].End);
+          }
+          expandSlice(grid, block, cell + k, span.Begin, span.End, alongX, expanded);
           held[slot] = cell + k;
         }
         slices[static_cast<std::size_t>(k)] = expanded;
       }
-      const BasisValues* w = grid.Z.Weight.data() + z;
       for (std::int64_t y = block.FirstY; y < block.LastY; ++y)
       {
-        const std::int64_t offset = (y - block.FirstY) * padded, imageSlice = rows * n;
-        Scalar* const out = values + (z * rows + y) * n;
-        if (!splineOnly)
+        const std::size_t row = grid.boxRow(y, z);
+        for (std::size_t r = grid.RunBegin[row]; r < grid.RunBegin[row + 1]; ++r)
         {
-          grid.findSplineRuns(y, z, next, runs);
-        }
-        for (const auto& part : runs)
-        {
-          std::array<const double*, Grid::Slices> in;
-          for (std::size_t k = 0; k < Grid::Slices; ++k)
+          const auto& part = grid.Runs[r];
+          if (part.Sign == 0)
           {
-            in[k] = slices[k] + offset;
-          }
-          combineGroup(next - z, in, w, part.Begin, part.End, out, imageSlice);
-        }
-        for (std::int64_t k = z; k < next && !splineOnly; ++k)
-        {
-          const std::size_t row = grid.boxRow(y, k);
-          Scalar* const slice = out + (k - z) * imageSlice;
-          for (std::size_t r = grid.RunBegin[row]; r < grid.RunBegin[row + 1]; ++r)
-          {
-            const auto& part = grid.Runs[r];
-            if (part.Sign != 0)
+            std::array<const double*, Grid::Slices> in;
+            for (std::size_t k = 0; k < Grid::Slices; ++k)
             {
-              const double constant = grid.Derivative ? 0.0 : part.Sign * grid.Far.Magnitude;
-              std::fill(slice + part.Begin, slice + part.End, static_cast<Scalar>(constant));
+              in[k] = slices[k] + (y - block.FirstY) * padded;
             }
+            combineGroup(next - z, in, grid.Z.Weight.data() + z, part.Begin, part.End,
+              values + (z * rows + y) * n, rows * n);
           }
         }
       }
     }
+  }
+};
+
+/// The constants of the far field in the slices [first, last), in the order of memory.
+template <int Dim, typename Scalar>
+struct ConstantKernel
+{
+  static IPIA_INLINE void run(
+    const SampleGrid<Dim>& grid, std::int64_t first, std::int64_t last, Scalar* values)
+  {
+    const std::int64_t n = grid.X.size(), rows = grid.Y.size();
+    const double magnitude = grid.Derivative ? 0.0 : grid.Far.Magnitude;
+    for (std::int64_t z = first; z < last; ++z)
+    {
+      for (std::int64_t y = 0; y < rows; ++y)
+      {
+        const std::size_t row = grid.boxRow(y, z);
+        Scalar* const out = values + (z * rows + y) * n;
+        for (std::size_t r = grid.RunBegin[row]; r < grid.RunBegin[row + 1]; ++r)
+        {
+          const auto& part = grid.Runs[r];
+          if (part.Sign != 0)
+          {
+            fill(out + part.Begin, out + part.End, static_cast<Scalar>(part.Sign * magnitude));
+          }
+        }
+      }
+    }
+  }
+
+  static IPIA_INLINE void fill(Scalar* begin, Scalar* end, Scalar value)
+  {
+    constexpr std::ptrdiff_t width = 64 / sizeof(Scalar);
+    if (end - begin < width)
+    {
+      std::fill(begin, end, value);
+      return;
+    }
+    std::array<Scalar, width> wide;
+    wide.fill(value);
+    for (; end - begin > width; begin += width)
+    {
+      std::memcpy(begin, wide.data(), sizeof(wide));
+    }
+    std::memcpy(end - width, wide.data(), sizeof(wide)); // may overlap the one before
   }
 };
 
@@ -638,25 +658,40 @@ bool ImplicitSpline<Dim>::sample(const AxisPositions<Dim>& positions, Scalar* va
   }
   grid.makeRuns();
 
-  const std::int64_t blocksY = (grid.Y.size() + BlockRows - 1) / BlockRows;
-  const std::int64_t blocksZ = (grid.Z.size() + BlockSlices - 1) / BlockSlices;
+  // A slab of slices after the other, constants first, so that what the spline overwrites is still
+  // in the cache.
+  const std::int64_t rows = grid.Y.size(), slices = grid.Z.size();
   std::atomic<bool> aborted{ false };
-#pragma omp parallel for schedule(dynamic) num_threads(resolveThreads(threads))
-  for (std::int64_t b = 0; b < blocksY * blocksZ; ++b)
+#pragma omp parallel num_threads(resolveThreads(threads))
   {
-    if (aborted)
+    for (std::int64_t first = 0; first < slices; first += BlockSlices)
     {
-      continue;
-    }
-    SampleBlock block;
-    block.FirstY = b % blocksY * BlockRows;
-    block.LastY = std::min(block.FirstY + BlockRows, grid.Y.size());
-    block.FirstZ = b / blocksY * BlockSlices;
-    block.LastZ = std::min(block.FirstZ + BlockSlices, grid.Z.size());
-    dispatch<SampleKernel<Dim, Scalar>>(grid, block, values);
-    if (progress && omp_get_thread_num() == 0 && !progress(double(b) / double(blocksY * blocksZ)))
-    {
-      aborted = true;
+      const std::int64_t last = std::min(first + BlockSlices, slices);
+      if (!this->Far.Sign.empty())
+      {
+        constexpr std::int64_t chunk = 8;
+#pragma omp for
+        for (std::int64_t z = first; z < last; z += chunk)
+        {
+          dispatch<ConstantKernel<Dim, Scalar>>(grid, z, std::min(z + chunk, last), values);
+        }
+      }
+#pragma omp for schedule(dynamic)
+      for (std::int64_t y = 0; y < rows; y += BlockRows)
+      {
+        if (aborted)
+        {
+          continue;
+        }
+        dispatch<SampleKernel<Dim, Scalar>>(
+          grid, SampleBlock{ y, std::min(y + BlockRows, rows), first, last }, values);
+        const auto done = static_cast<double>(first * rows + y * (last - first));
+        if (progress && omp_get_thread_num() == 0 &&
+          !progress(done / static_cast<double>(rows * slices)))
+        {
+          aborted = true;
+        }
+      }
     }
   }
   return !aborted;
