@@ -11,6 +11,8 @@
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
 
 #include <algorithm>
 #include <cmath>
@@ -213,7 +215,8 @@ std::string FairingRound::insertKnots()
   return {};
 }
 
-std::string FairingRound::chooseWeights(const FairingParameters& p)
+std::string FairingRound::chooseWeights(
+  const FairingParameters& p, const ProgressCallback& progress)
 {
   if (this->DataWeights.size() > 0)
   {
@@ -240,11 +243,19 @@ std::string FairingRound::chooseWeights(const FairingParameters& p)
       options.Solver = FairingSolver::BiconjugateGradient; // to the same limit, sooner
       options.StepSize = 0;
     }
-    iterateFairing(system, fittingResiduals(plain, this->Data, 0), options, plain);
-    if (!plain.ControlPoints.allFinite())
+    const FairingResult result = iterateFairing(system, fittingResiduals(plain, this->Data, 0),
+      options, plain, [&](double) { return !progress || progress(0); });
+    this->ChoiceUnfinished = result.Status == FairingStatus::NotConverged;
+    if (result.Status == FairingStatus::Singular || result.Status == FairingStatus::Diverged)
     {
-      return "The curvature for the automatic choice cannot be computed: the equations have no "
-             "solution. Set a FairingWeight above 0.";
+      return "The curve or surface by which AutomaticFairing chooses cannot be computed: with "
+             "FairingWeight alone its equations have no unique solution. Set a larger "
+             "FairingWeight "
+             "or fewer control points.";
+    }
+    if (result.Status == FairingStatus::Aborted)
+    {
+      return {};
     }
     measure = p.AutomaticFairing == vtkFairingPIAFilter::CurvatureVariation
       ? curvatureVariation(plain)
@@ -271,7 +282,7 @@ std::string FairingRound::run(const FairingParameters& p, const ProgressCallback
   std::string refusal = this->insertKnots();
   if (refusal.empty())
   {
-    refusal = this->chooseWeights(p);
+    refusal = this->chooseWeights(p, progress);
   }
   if (!refusal.empty())
   {
@@ -328,6 +339,16 @@ Vector toVector(vtkDataArray* array)
     values[k] = array->GetComponent(k, 0);
   }
   return values;
+}
+
+vtkDoubleArray* addPointArray(vtkPolyData* data, const char* name, int components)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(data->GetNumberOfPoints());
+  data->GetPointData()->AddArray(array);
+  return array;
 }
 
 void addFieldArray(vtkFieldData* field, const char* name, const std::vector<double>& values)

@@ -13,7 +13,9 @@
 #include <vector>
 
 class vtkDataArray;
+class vtkDoubleArray;
 class vtkFieldData;
+class vtkPolyData;
 
 namespace ipia
 {
@@ -55,6 +57,8 @@ public:
   Vector Weights;
   Eigen::MatrixXd Residuals;
   FairingResult Result;
+  /// The fit by which weights were chosen did not reach the tolerance.
+  bool ChoiceUnfinished = false;
   double FittingError = 0;
   double FairingEnergy = 0;
 
@@ -72,7 +76,7 @@ public:
 
 private:
   std::string insertKnots();
-  std::string chooseWeights(const FairingParameters& parameters);
+  std::string chooseWeights(const FairingParameters& parameters, const ProgressCallback& progress);
 };
 
 /// A knot that coincides with others more than @a degree times, or with an end of the domain; else
@@ -84,6 +88,9 @@ std::string checkWeights(const Vector& weights, const std::string& name);
 
 /// The first component of an array.
 Vector toVector(vtkDataArray* array);
+
+/// A new point array of doubles, to be filled.
+vtkDoubleArray* addPointArray(vtkPolyData* data, const char* name, int components);
 
 /// An array of one component as field data; replaces one of that name.
 void addFieldArray(vtkFieldData* field, const char* name, const std::vector<double>& values);

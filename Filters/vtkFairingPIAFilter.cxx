@@ -17,7 +17,7 @@ vtkFairingPIAFilter::vtkFairingPIAFilter()
   , DerivativeOrder(2)
   , Parametrization(Chord)
   , FairingWeight(1e-6)
-  , AutomaticFairing(NoAutomaticFairing)
+  , AutomaticFairing(Off)
   , AutomaticShare(0.25)
   , AutomaticFairingWeight(1e-4)
   , Solver(ProgressiveIteration)
@@ -89,7 +89,7 @@ bool vtkFairingPIAFilter::Report(double share)
 void vtkFairingPIAFilter::SetResults(const std::vector<ipia::FairingRound>& rounds)
 {
   double squared = 0, count = 0;
-  int unfinished = 0;
+  int unfinished = 0, unfinishedChoices = 0;
   this->FairingEnergy = this->IterationError = 0;
   this->NumberOfIterationsUsed = 0;
   for (const ipia::FairingRound& round : rounds)
@@ -101,9 +101,17 @@ void vtkFairingPIAFilter::SetResults(const std::vector<ipia::FairingRound>& roun
       std::max(this->NumberOfIterationsUsed, round.Result.NumberOfIterations);
     this->IterationError =
       std::max(this->IterationError, round.Result.History.IterationError.back());
+    unfinishedChoices += round.ChoiceUnfinished ? 1 : 0;
     unfinished += round.Result.Status == ipia::FairingStatus::NotConverged ? 1 : 0;
   }
   this->FittingError = count > 0 ? std::sqrt(squared / count) : 0.0;
+  if (unfinished == 0 && unfinishedChoices > 0)
+  {
+    vtkWarningMacro("The fit by which AutomaticFairing chose did not reach the tolerance "
+      << this->Tolerance << " in " << this->MaximumNumberOfIterations << " iterations ("
+      << unfinishedChoices << " of " << rounds.size()
+      << " fits). Set a larger MaximumNumberOfIterations or Tolerance.");
+  }
   if (unfinished > 0)
   {
     vtkWarningMacro("The iteration did not reach the tolerance "

@@ -133,7 +133,7 @@ public:
   /// How control points to fair are chosen, where the user gives no weights.
   enum AutomaticFairings
   {
-    NoAutomaticFairing = 0, ///< not at all (default)
+    Off = 0, ///< not at all (default)
     /// By second differences of the data, |Q_{i-1} - 2 Q_i + Q_{i+1}|, as section 5.2 of the paper;
     /// of scattered data by those of the control net with FairingWeight alone.
     SecondDifference = 1,
@@ -145,11 +145,11 @@ public:
   ///@{
   /**
    * The AutomaticShare of the control points for which the measure is largest get
-   * AutomaticFairingWeight. Default NoAutomaticFairing.
+   * AutomaticFairingWeight. Default Off.
    */
-  vtkSetClampMacro(AutomaticFairing, int, NoAutomaticFairing, CurvatureVariation);
+  vtkSetClampMacro(AutomaticFairing, int, Off, CurvatureVariation);
   vtkGetMacro(AutomaticFairing, int);
-  void SetAutomaticFairingToNoAutomaticFairing() { this->SetAutomaticFairing(NoAutomaticFairing); }
+  void SetAutomaticFairingToOff() { this->SetAutomaticFairing(Off); }
   void SetAutomaticFairingToSecondDifference() { this->SetAutomaticFairing(SecondDifference); }
   void SetAutomaticFairingToCurvatureVariation() { this->SetAutomaticFairing(CurvatureVariation); }
   ///@}

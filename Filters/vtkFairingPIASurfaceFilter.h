@@ -64,7 +64,8 @@ public:
 
   ///@{
   /**
-   * Control points along u and v, each Degree + 1 or more, and no more than the grid has points; 0
+   * Control points along u and v, each Degree + 1 or more, and no more than the grid has points
+   * (given parameters: together no more than four times the points); 0
    * (the default): a third of the points of the grid, of m given parameters a third of sqrt(m). An
    * earlier round on port 1 has its own.
    */

@@ -8,7 +8,8 @@ Reproduces the figures and tables of
 
 with vtkFairingPIACurveFilter and vtkFairingPIASurfaceFilter: one PNG per figure, and Tables 1 to 3 on
 the console. The data of the paper are not public: curves and surfaces are generated and share kind
-and size with the paper's, the surfaces their names only. Rendering needs a display; without one run it under xvfb-run -a.
+and size with the paper's, the surfaces their names only. Rendering needs a display; without one run
+it under xvfb-run -a.
 
   PYTHONPATH=<build>/lib/python3/dist-packages python3 reproduce_fairing_pia_2022.py
 """

@@ -260,6 +260,20 @@ void TestGrids(Checks& checks)
   given("The parameter u of point 55 is 1.2", 1.2, 0.5);
   given("The parameter v of point 55 is -0.1", 0.5, -0.1);
   given("The parameter v of point 55 is nan", 0.5, NaN);
+  refused("more than 4 times the 400 points", ipiatest::WavyGrid(20, 20),
+    [](SurfaceFilter f)
+    {
+      auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
+      vtkNew<vtkDoubleArray> uv;
+      uv->SetNumberOfComponents(2);
+      for (int k = 0; k < 400; ++k)
+      {
+        uv->InsertNextTuple2(k % 20 / 19.0, k / 20 / 19.0);
+      }
+      data->GetPointData()->SetTCoords(uv);
+      f->SetParametrizationToGiven();
+      f->SetNumberOfControlPoints(100000, 100000);
+    });
 }
 
 template <typename Filter>
@@ -273,6 +287,15 @@ void TestWarning(Checks& checks, const std::string& name)
   messages->CheckOneWarning(checks, "did not reach the tolerance", name + ", two iterations");
   checks.That(ipiatest::AllOutputsAreFinite(filter), name + ": the result is there");
   checks.Equal(filter->GetNumberOfIterationsUsed(), 2, name + ": iterations");
+  // So is the fit by which control points are chosen.
+  filter->SetMaximumNumberOfIterations(30);
+  filter->SetSolverToBiconjugateGradient();
+  filter->SetTolerance(1e-30);
+  filter->SetAutomaticFairingToCurvatureVariation();
+  filter->Update();
+  checks.That(!messages->Warnings.empty() && messages->Errors.empty(), name + ", choice: warned");
+  messages->Clear();
+  filter->SetAutomaticFairingToOff();
   // Who asks for a number of iterations gets it without a word.
   filter->SetTolerance(0);
   filter->Update();
