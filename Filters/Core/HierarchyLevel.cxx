@@ -21,9 +21,6 @@ constexpr int CoarsestIterationsPerCell = 4;
 constexpr double UnitDensity = 151. / 315;
 /// The scale of residuals is at least this many knot spacings.
 constexpr double LeastScale = 0.1;
-/// A row counts in full where the coarser prediction rises by at least this share of the slope that
-/// its normal asks for, and in proportion below, down to a limit.
-constexpr double FullSlope = 0.7, LeastTrustInThinParts = 0.1;
 /// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
 constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
 
@@ -93,21 +90,6 @@ double median(std::vector<float> values)
   return *middle;
 }
 
-/// How far the prediction's slope along the normal of a row is what the row asks for; low on parts
-/// too thin for the lattice, where the rows of both sides contradict each other.
-template <int Dim>
-double trustInSlope(const HermiteRow<Dim>& row, const float* predictedGradient)
-{
-  double along = 0, full = 0;
-  for (int a = 0; a < Dim; ++a)
-  {
-    along += static_cast<double>(row.Slope[a]) * predictedGradient[a];
-    full += static_cast<double>(row.Slope[a]) * row.Slope[a];
-  }
-  const double slope = full > 0 ? along / full : 1.0;
-  return std::min(std::max(slope / FullSlope, LeastTrustInThinParts), 1.0);
-}
-
 /// Scales the weights so that the rows of an occupied cell weigh about 1 in all, and takes weight
 /// from rows that the coarser prediction misses by far, from those of parts too thin for the
 /// lattice, which the fairing is to hold together, and where the fairing is to count more.
@@ -143,6 +125,7 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
   // f and its gradient, in knot spacings, by the coarser level.
   constexpr std::size_t stride = 1 + Dim;
   std::vector<float> prediction;
+  const double spacing = level.Grid.Spacing.mean();
   double scale = 0;
   if (predicted)
   {
@@ -156,9 +139,11 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
       const auto k = static_cast<std::size_t>(row.Source);
       misses[k] = std::abs(prediction[k * stride] - row.Value);
     }
-    scale = options.RobustFactor *
-      std::max(1.4826 * median(std::move(misses)), LeastScale * bricks.lattice().Spacing.mean());
+    scale =
+      options.RobustFactor * std::max(1.4826 * median(std::move(misses)), LeastScale * spacing);
   }
+  // On coarse levels every part is thin, and the finer ones need what these know of it.
+  const bool mayBeThin = predicted && longestAxis(level.Grid) > 2 * options.DenseCells;
   const auto weigh = [&](HermiteRow<Dim>& row)
   {
     double factor = 1 / typical;
@@ -170,7 +155,7 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
       const double trust = 1 / (1 + miss * miss);
       factor *= trust * trust;
     }
-    if (predicted && !level.Dense && row.GradientWeight > 0)
+    if (mayBeThin && row.GradientWeight > 0)
     {
       factor *= trustInSlope<Dim>(row, at + 1);
     }
@@ -273,6 +258,20 @@ void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, in
     ++report.NumberOfIterations;
   }
 }
+}
+
+template <int Dim>
+double trustInSlope(const HermiteRow<Dim>& row, const float* predictedGradient)
+{
+  constexpr double fullSlope = 0.7, leastSlope = 0.03;
+  double along = 0, full = 0;
+  for (int a = 0; a < Dim; ++a)
+  {
+    along += static_cast<double>(row.Slope[a]) * predictedGradient[a];
+    full += static_cast<double>(row.Slope[a]) * row.Slope[a];
+  }
+  const double slope = full > 0 ? along / full : 1.0;
+  return std::sqrt(std::min(std::max(slope / fullSlope, leastSlope), 1.0));
 }
 
 template <int Dim>
@@ -461,6 +460,7 @@ template std::vector<Level<2>> makeLevels<2>(
   const Lattice<2>&, Samples<2>, const HierarchicalOptions&, int);
 template Samples<2> coarserData<2>(const Samples<2>&, int, int);
 template std::vector<BrickLattice<2>> makeBricks<2>(const std::vector<Level<2>>&);
+template double trustInSlope<2>(const HermiteRow<2>&, const float*);
 template double occupiedCells<2>(const Level<2>&);
 template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&,
   std::size_t, double, const HierarchicalOptions&, int, const ProgressCallback&);
@@ -470,6 +470,7 @@ template std::vector<Level<3>> makeLevels<3>(
   const Lattice<3>&, Samples<3>, const HierarchicalOptions&, int);
 template Samples<3> coarserData<3>(const Samples<3>&, int, int);
 template std::vector<BrickLattice<3>> makeBricks<3>(const std::vector<Level<3>>&);
+template double trustInSlope<3>(const HermiteRow<3>&, const float*);
 template double occupiedCells<3>(const Level<3>&);
 template LevelReport solveLevel<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&,
   std::size_t, double, const HierarchicalOptions&, int, const ProgressCallback&);

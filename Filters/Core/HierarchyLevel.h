@@ -7,6 +7,7 @@
 #define ipia_HierarchyLevel_h
 
 #include "BrickLattice.h"
+#include "HermiteRows.h"
 #include "LeastSquaresSolver.h"
 #include "PointSamples.h"
 
@@ -125,6 +126,17 @@ std::int64_t longestAxis(const Lattice<Dim>& lattice)
   }
   return cells;
 }
+
+/**
+ * How far a prediction can follow the normal of a row, the factor of the weight of the row: 1 where
+ * it rises along the normal by at least 0.7 of what the row asks for, else the root of its share of
+ * that, at least sqrt(0.03). Low on parts too thin for the lattice, where the rows of both sides
+ * contradict each other.
+ *
+ * @param predictedGradient  h grad f
+ */
+template <int Dim>
+double trustInSlope(const HermiteRow<Dim>& row, const float* predictedGradient);
 
 /// Number of knot cells with data.
 template <int Dim>

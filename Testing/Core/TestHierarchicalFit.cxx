@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HierarchicalFit.h"
 
+#include "HierarchyLevel.h"
 #include "ImplicitSpline.h"
 #include "TestSupport.h"
 
@@ -199,5 +200,27 @@ TYPED_TEST(HierarchicalFit, StopsAsAsked)
   EXPECT_GT(three.Reports.back().Energy, 0);
   options.NumberOfLevels = 1;
   EXPECT_EQ(fitHierarchical(lattice, input, options).Function->levels().size(), 1u);
+}
+TYPED_TEST(HierarchicalFit, TrustsRowsThatThePredictionFollows)
+{
+  constexpr int Dim = TypeParam::value;
+  HermiteRow<Dim> row{};
+  row.Slope[0] = 0.3F; // h n
+  row.Slope[1] = -0.4F;
+  const auto trust = [&](float share, float across)
+  {
+    std::array<float, Dim> gradient{};
+    gradient[0] = share * row.Slope[0] + across * 0.4F;
+    gradient[1] = share * row.Slope[1] + across * 0.3F;
+    return trustInSlope<Dim>(row, gradient.data());
+  };
+  EXPECT_EQ(trust(1, 0), 1);
+  EXPECT_EQ(trust(0.8F, 5), 1);
+  EXPECT_NEAR(trust(0.35F, 0), std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(trust(0.35F, 2), std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(trust(0, 1), std::sqrt(0.03), 1e-6);
+  EXPECT_NEAR(trust(-1, 0), std::sqrt(0.03), 1e-6);
+  row.Slope.fill(0);
+  EXPECT_EQ(trust(0, 0), 1);
 }
 }

@@ -343,47 +343,6 @@ void TestSmallComponent(Checks& checks)
     checks.Equal(reconstruction->GetNumberOfComponentsLeftOut(), few < 24 ? 1 : 0, what);
   }
 }
-
-/// Random points on an ellipsoid so flat that the lattice has less than two spacings across it:
-/// rows of both sides contradict each other, and gaps in one side must not become tunnels.
-void TestThinPart(Checks& checks)
-{
-  const Vector3 axes{ 1, 0.8, 0.008 };
-  vtkNew<vtkMinimalStandardRandomSequence> random;
-  const auto uniform = [&](double low, double high)
-  {
-    random->Next();
-    return random->GetRangeValue(low, high);
-  };
-  for (int seed : { 1, 2, 3 })
-  {
-    random->SetSeed(seed);
-    OrientedPoints cloud;
-    while (cloud.Positions.size() < 20000)
-    {
-      // A point of the sphere is taken with the share that its surroundings are stretched by.
-      const double z = uniform(-1, 1), angle = uniform(0, 2 * vtkMath::Pi());
-      const double r = std::sqrt(1 - z * z);
-      const Vector3 sphere{ r * std::cos(angle), r * std::sin(angle), z };
-      Vector3 x, n;
-      for (std::size_t a = 0; a < 3; ++a)
-      {
-        x[a] = sphere[a] * axes[a];
-        n[a] = sphere[a] / axes[a];
-      }
-      if (uniform(0, 1) < vtkMath::Normalize(n.data()) * axes[2])
-      {
-        cloud.Add(x, n);
-      }
-    }
-    auto reconstruction = Reconstruct(cloud);
-    const std::string what = Text("flat ellipsoid, seed ", seed);
-    checks.AtMost(2 * axes[2] / ipiatest::KnotSpacing(reconstruction->GetFitter()), 2.0,
-      what + ": knot spacings across it");
-    checks.Equal(
-      ipiatest::TopologyOf(reconstruction->GetOutput()), ipiatest::Topology{ 1, 0, 0, 0 }, what);
-  }
-}
 }
 
 int TestSurfaceReconstruction(int, char*[])
@@ -403,6 +362,5 @@ int TestSurfaceReconstruction(int, char*[])
   TestComponentWithoutData(checks);
   TestComponentWithFewData(checks);
   TestSmallComponent(checks);
-  TestThinPart(checks);
   return checks.Result();
 }
