@@ -1,11 +1,11 @@
 # The mathematics, free of VTK: part of the module, and a library of its own for the core's tests.
 foreach (name IN ITEMS
-    AutomaticLattice BrickLattice BrickOperator BrickSpline CollocationOperator ConstraintRows FarField
-    HierarchicalFit HierarchyLevel ImplicitFit ImplicitSpline
-    KnotRefinement LeastSquaresSolver PointSamples)
+    AutomaticFairing AutomaticLattice BSplineBasis BrickLattice BrickOperator BrickSpline
+    CollocationOperator ConstraintRows FairingIteration FairingSystem FarField HierarchicalFit HierarchyLevel ImplicitFit ImplicitSpline
+    KnotRefinement LeastSquaresSolver Parametrization PointSamples TensorSpline)
   list(APPEND ipia_core_sources "${CMAKE_CURRENT_LIST_DIR}/${name}.cxx")
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()
-foreach (name IN ITEMS CubicBasis Dispatch HermiteRows Lattice OutsideDomain Parallel Types)
+foreach (name IN ITEMS BandMatrix CubicBasis Dispatch HermiteRows Lattice OutsideDomain Parallel Types)
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()

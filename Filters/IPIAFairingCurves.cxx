@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The input of vtkFairingPIACurveFilter, read and checked.
+#include "IPIAFairingCurves.h"
+
+#include "Core/Parametrization.h"
+#include "IPIAText.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <cmath>
+
+void vtkFairingPIACurveFilter::Curves::readLines()
+{
+  auto cell = vtkSmartPointer<vtkCellArrayIterator>::Take(this->Input->GetLines()->NewIterator());
+  for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell())
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    cell->GetCurrentCell(size, ids);
+    Line line;
+    line.Ids.assign(ids, ids + size);
+    bool returns = false;
+    if (size > 2)
+    {
+      double first[3], last[3];
+      this->Input->GetPoint(ids[0], first);
+      this->Input->GetPoint(ids[size - 1], last);
+      returns = std::equal(first, first + 3, last);
+    }
+    line.Closed = this->Filter->Closure == ClosedCurves ||
+      (this->Filter->Closure == AutomaticClosure && returns);
+    if (line.Closed && returns)
+    {
+      line.Ids.pop_back();
+    }
+    this->Lines.push_back(std::move(line));
+  }
+}
+
+std::string vtkFairingPIACurveFilter::Curves::readPoints(std::size_t k)
+{
+  const Line& line = this->Lines[k];
+  Eigen::MatrixXd points(static_cast<Eigen::Index>(line.Ids.size()), 3);
+  for (std::size_t i = 0; i < line.Ids.size(); ++i)
+  {
+    double x[3];
+    this->Input->GetPoint(line.Ids[i], x);
+    for (int c = 0; c < 3; ++c)
+    {
+      points(static_cast<Eigen::Index>(i), c) = x[c];
+    }
+    if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2]))
+    {
+      return ipia::text("Point ", line.Ids[i], " of line ", k, " is not finite: ", ipia::triple(x),
+        ". Remove it from the line.");
+    }
+  }
+  this->Rounds[k].setPoints(points);
+  this->Rounds[k].GridSize = { points.rows(), 1 };
+  return {};
+}
+
+std::string vtkFairingPIACurveFilter::Curves::readParameters(std::size_t k, vtkDataArray* given)
+{
+  const Line& line = this->Lines[k];
+  ipia::FairingRound& round = this->Rounds[k];
+  const Eigen::MatrixXd& points = round.Data.Points;
+  round.Data.Parameters[1] = ipia::Vector::Zero(1);
+  ipia::Vector& t = round.Data.Parameters[0];
+  if (!given)
+  {
+    for (std::size_t i = 1; i < line.Ids.size() + (line.Closed ? 1 : 0); ++i)
+    {
+      const auto a = static_cast<Eigen::Index>(i - 1);
+      const auto b = static_cast<Eigen::Index>(i % line.Ids.size());
+      if (points.row(a) == points.row(b))
+      {
+        return ipia::text("Points ", line.Ids[i - 1], " and ", line.Ids[i % line.Ids.size()],
+          " follow each other on line ", k,
+          " at the same place. Leave one of them out (vtkCleanPolyData), or set Parametrization to "
+          "Given and give parameters.");
+      }
+    }
+    t = ipia::parametrize(
+      points, static_cast<ipia::ParametrizationType>(this->Filter->Parametrization), line.Closed);
+    return {};
+  }
+  t.resize(points.rows());
+  for (Eigen::Index i = 0; i < t.size(); ++i)
+  {
+    const vtkIdType id = line.Ids[static_cast<std::size_t>(i)];
+    t[i] = given->GetComponent(id, 0);
+    if (!(t[i] >= 0 && t[i] <= 1))
+    {
+      return ipia::text(
+        "The parameter of point ", id, " is ", t[i], "; parameters lie in [0, 1]. Scale them.");
+    }
+    if (i > 0 && t[i] < t[i - 1])
+    {
+      return ipia::text("The parameters of line ", k, " fall: ", t[i - 1], " at point ",
+        line.Ids[static_cast<std::size_t>(i - 1)], ", then ", t[i], " at point ", id,
+        ". Sort the points of the line by their parameters.");
+    }
+  }
+  if (!(t[t.size() - 1] > t[0]))
+  {
+    return ipia::text(
+      "All parameters of line ", k, " are ", t[0], "; they must rise along the line.");
+  }
+  return {};
+}
+
+std::string vtkFairingPIACurveFilter::Curves::readEarlierRound()
+{
+  const auto field = [&](const char* name)
+  { return this->Controls->GetFieldData()->GetArray(name); };
+  vtkDataArray *degree = field("Degree"), *knots = field("Knots"), *offsets = field("KnotOffsets"),
+               *closed = field("Closed");
+  const auto curves = static_cast<vtkIdType>(this->Rounds.size());
+  if (!degree || !knots || !offsets || !closed || degree->GetNumberOfTuples() != 1)
+  {
+    return "The control points on port 1 lack the field data Degree, Closed, Knots and "
+           "KnotOffsets. "
+           "Connect output 1 of an earlier round.";
+  }
+  if (offsets->GetNumberOfTuples() != curves + 1 || closed->GetNumberOfTuples() != curves)
+  {
+    return ipia::text("The control points on port 1 are those of ", closed->GetNumberOfTuples(),
+      " curves, the input has ", curves, " lines. Connect output 1 of a round on the same lines.");
+  }
+  const int p = static_cast<int>(degree->GetComponent(0, 0));
+  if (p < 1 || p > ipia::BSplineBasis::MaximumDegree)
+  {
+    return ipia::text(
+      "The Degree of the control points on port 1 is ", p, "; 1 to 5 are possible.");
+  }
+  if (this->Filter->DerivativeOrder > p)
+  {
+    return ipia::text("DerivativeOrder is ", this->Filter->DerivativeOrder,
+      " and the control points on port 1 are of degree ", p, ". Set a lower DerivativeOrder.");
+  }
+  vtkDataArray* weights = this->Filter->GetInputArrayToProcess(1, this->Controls);
+  vtkDataArray* movable = this->Filter->GetInputArrayToProcess(2, this->Controls);
+  vtkIdType first = 0;
+  for (vtkIdType k = 0; k < curves; ++k)
+  {
+    ipia::FairingRound& round = this->Rounds[static_cast<std::size_t>(k)];
+    const auto begin = static_cast<vtkIdType>(offsets->GetComponent(k, 0));
+    const auto end = static_cast<vtkIdType>(offsets->GetComponent(k + 1, 0));
+    const bool periodic = closed->GetComponent(k, 0) != 0;
+    std::vector<double> interior;
+    for (vtkIdType i = begin + p + 1; i < std::min(end, knots->GetNumberOfTuples()) - p - 1; ++i)
+    {
+      interior.push_back(knots->GetComponent(i, 0));
+    }
+    if (begin < 0 || end > knots->GetNumberOfTuples() || end - begin < 2 * p + 2 ||
+      !std::is_sorted(interior.begin(), interior.end()) || ipia::excessKnot(interior, p) >= 0 ||
+      (periodic && static_cast<int>(interior.size()) < p))
+    {
+      return ipia::text("The knots of curve ", k, " on port 1 are not those of a curve of degree ",
+        p,
+        ": between 0 and 1 they must rise, none more than "
+        "Degree times. Connect output 1 of an earlier round.");
+    }
+    if (periodic != this->Lines[static_cast<std::size_t>(k)].Closed)
+    {
+      return ipia::text("Curve ", k, " on port 1 is ", periodic ? "closed" : "open", ", line ", k,
+        " is not. Set Closure as in the earlier round.");
+    }
+    round.Spline.Axes[0] = periodic ? ipia::BSplineBasis::periodic(p, interior)
+                                    : ipia::BSplineBasis::clamped(p, interior);
+    const std::int64_t n = round.Spline.size();
+    if (first + n > this->Controls->GetNumberOfPoints())
+    {
+      return ipia::text("The knots on port 1 ask for more control points than the ",
+        this->Controls->GetNumberOfPoints(),
+        " that are there. Connect output 1 of an earlier round.");
+    }
+    round.Spline.ControlPoints.resize(n, 3);
+    round.ControlWeights.resize(weights ? n : 0);
+    round.Movable.resize(movable ? n : 0);
+    for (std::int64_t j = 0; j < n; ++j)
+    {
+      double x[3];
+      this->Controls->GetPoint(first + j, x);
+      for (int c = 0; c < 3; ++c)
+      {
+        round.Spline.ControlPoints(j, c) = x[c] - round.Centre[c];
+      }
+      if (weights)
+      {
+        round.ControlWeights[j] = weights->GetComponent(first + j, 0);
+      }
+      if (movable)
+      {
+        round.Movable[j] = movable->GetComponent(first + j, 0);
+      }
+    }
+    if (!round.Spline.ControlPoints.allFinite())
+    {
+      return ipia::text("A control point of curve ", k,
+        " on port 1 is not finite. Remove the cause, or "
+        "begin without port 1.");
+    }
+    first += n;
+  }
+  return {};
+}
+
+std::string vtkFairingPIACurveFilter::Curves::start(
+  std::size_t k, const ipia::FairingParameters& parameters)
+{
+  const Line& line = this->Lines[k];
+  ipia::FairingRound& round = this->Rounds[k];
+  const auto m = static_cast<std::int64_t>(line.Ids.size());
+  const std::int64_t least = parameters.Degree + 1;
+  const std::int64_t n = this->Filter->NumberOfControlPoints > 0
+    ? this->Filter->NumberOfControlPoints
+    : std::max(least, (m + 2) / 3);
+  if (n < least || n > m)
+  {
+    return ipia::text("NumberOfControlPoints is ", n, "; line ", k, " with ", m,
+      " points and degree ", parameters.Degree, " can have ", least, " to ", m, ".");
+  }
+  round.Spline.Axes[0] =
+    ipia::averagedKnots(round.Data.Parameters[0], parameters.Degree, n, line.Closed);
+  const double excess = ipia::excessKnot(round.Spline.Axes[0].interiorKnots(), parameters.Degree);
+  if (excess >= 0)
+  {
+    return ipia::text("Line ", k, " has so many points of parameter ", excess,
+      " that more than Degree knots coincide there. Leave some out, or set fewer control points.");
+  }
+  round.startFromGrid();
+  return {};
+}
+
+std::string vtkFairingPIACurveFilter::Curves::read(const ipia::FairingParameters& parameters)
+{
+  this->readLines();
+  if (this->Lines.empty())
+  {
+    return "The input has no lines. Every curve is one polyline (vtkPolyData with lines); "
+           "vtkStripper "
+           "joins segments.";
+  }
+  vtkDataArray* given = nullptr;
+  if (this->Filter->Parametrization == Given)
+  {
+    given = this->Filter->GetInputArrayToProcess(3, this->Input);
+    if (!given || given->GetNumberOfComponents() != 1)
+    {
+      return ipia::text("Parametrization is Given, but ",
+        given ? "the array of parameters has " + std::to_string(given->GetNumberOfComponents()) +
+            " components."
+              : std::string("there is no array of parameters."),
+        " Choose a point array of one component with SetInputArrayToProcess(3, 0, ...).");
+    }
+  }
+  vtkDataArray* weights = this->Filter->GetInputArrayToProcess(0, this->Input);
+  if (weights && weights->GetNumberOfComponents() != 1)
+  {
+    return ipia::text("The fairing weights have ", weights->GetNumberOfComponents(),
+      " components. Choose a point array of one component with SetInputArrayToProcess(0, 0, ...).");
+  }
+  if (weights)
+  {
+    const std::string refusal =
+      ipia::checkWeights(ipia::toVector(weights), weights->GetName() ? weights->GetName() : "");
+    if (!refusal.empty())
+    {
+      return refusal;
+    }
+  }
+  this->Rounds.resize(this->Lines.size());
+  for (std::size_t k = 0; k < this->Lines.size(); ++k)
+  {
+    const Line& line = this->Lines[k];
+    const auto least = static_cast<std::size_t>(parameters.Degree + 1);
+    if (line.Ids.size() < least)
+    {
+      return ipia::text("Line ", k, " has ", line.Ids.size(),
+        " different points; a curve of degree ", parameters.Degree, " needs ", least,
+        " at least. Give more points or set a lower Degree.");
+    }
+    std::string refusal = this->readPoints(k);
+    refusal = refusal.empty() ? this->readParameters(k, given) : refusal;
+    if (!refusal.empty())
+    {
+      return refusal;
+    }
+    if (weights)
+    {
+      this->Rounds[k].DataWeights.resize(static_cast<Eigen::Index>(line.Ids.size()));
+      for (std::size_t i = 0; i < line.Ids.size(); ++i)
+      {
+        this->Rounds[k].DataWeights[static_cast<Eigen::Index>(i)] =
+          weights->GetComponent(line.Ids[i], 0);
+      }
+    }
+    this->Rounds[k].InsertedKnots[0] = this->Filter->InsertedKnots;
+  }
+  if (this->Controls && this->Controls->GetNumberOfPoints() > 0)
+  {
+    std::string refusal = this->readEarlierRound();
+    for (std::size_t k = 0; refusal.empty() && k < this->Rounds.size(); ++k)
+    {
+      refusal = ipia::checkWeights(this->Rounds[k].ControlWeights, "FairingWeight");
+    }
+    return refusal;
+  }
+  for (std::size_t k = 0; k < this->Lines.size(); ++k)
+  {
+    const std::string refusal = this->start(k, parameters);
+    if (!refusal.empty())
+    {
+      return refusal;
+    }
+  }
+  return {};
+}

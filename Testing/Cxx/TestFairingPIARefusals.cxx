@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What the fairing filters refuse, with one message and empty outputs; what they warn of; progress,
+ * abort, and one object used again.
+ */
+#include "IPIATestFairing.h"
+#include "IPIATestPipeline.h"
+
+#include <limits>
+
+namespace
+{
+using ipiatest::Checks;
+using ipiatest::Output;
+using ipiatest::Text;
+using ipiatest::Vector3;
+
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+using CurveFilter = vtkSmartPointer<vtkFairingPIACurveFilter>;
+using SurfaceFilter = vtkSmartPointer<vtkFairingPIASurfaceFilter>;
+
+/// A filter that has run well, so that what is refused must also be cleared.
+template <typename Filter>
+Filter WarmFilter()
+{
+  auto filter = Filter::New();
+  if constexpr (std::is_same_v<Filter, CurveFilter>)
+  {
+    filter->SetInputData(ipiatest::ToLine(ipiatest::WavePoints(60)));
+  }
+  else
+  {
+    filter->SetInputData(ipiatest::WavyGrid(20, 20));
+  }
+  filter->Update();
+  return filter;
+}
+
+template <typename Filter>
+void CheckRefused(Checks& checks, const std::string& phrase, const std::string& what,
+  const std::function<void(Filter)>& spoil)
+{
+  Filter filter = WarmFilter<Filter>();
+  checks.That(ipiatest::AllOutputsAreFinite(filter), what + ": good before");
+  vtkNew<ipiatest::MessageObserver> messages;
+  messages->Watch(filter);
+  spoil(filter);
+  filter->Update();
+  messages->CheckOneError(checks, phrase, what);
+  checks.That(ipiatest::AllOutputsAreEmpty(filter), what + ": outputs are empty");
+  checks.Equal(filter->GetFittingError(), 0.0, what + ": fitting error");
+  checks.Equal(filter->GetNumberOfIterationsUsed(), 0, what + ": iterations");
+}
+
+/// Of both filters.
+template <typename Filter>
+void TestParameters(Checks& checks, const std::string& name)
+{
+  const auto refused = [&](const std::string& phrase, const std::function<void(Filter)>& spoil)
+  { CheckRefused<Filter>(checks, phrase, name + ", " + phrase, spoil); };
+  refused("FairingWeight is -0.1", [](Filter f) { f->SetFairingWeight(-0.1); });
+  refused("FairingWeight is 1.5", [](Filter f) { f->SetFairingWeight(1.5); });
+  refused("FairingWeight is nan", [](Filter f) { f->SetFairingWeight(NaN); });
+  refused("AutomaticFairingWeight is 2", [](Filter f) { f->SetAutomaticFairingWeight(2); });
+  refused("AutomaticShare is -1", [](Filter f) { f->SetAutomaticShare(-1); });
+  refused("Tolerance is -1", [](Filter f) { f->SetTolerance(-1); });
+  refused("StepSize is nan", [](Filter f) { f->SetStepSize(NaN); });
+  refused("DerivativeOrder is 3 and Degree is 2",
+    [](Filter f)
+    {
+      f->SetDegree(2);
+      f->SetDerivativeOrder(3);
+    });
+  refused("diverged", [](Filter f) { f->SetStepSize(1e3); });
+  refused("no array of parameters", [](Filter f) { f->SetParametrizationToGiven(); });
+  refused("Value 3 of the fairing weights \"w\" is 1.5",
+    [](Filter f)
+    {
+      auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
+      ipiatest::AddArray(data, "w", [](vtkIdType k) { return k == 3 ? 1.5 : 0.5; });
+      ipiatest::Choose(f, 0, 0, "w");
+      f->Modified();
+    });
+  refused("Value 0 of the fairing weights \"w\" is nan",
+    [](Filter f)
+    {
+      auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
+      ipiatest::AddArray(data, "w", [](vtkIdType) { return NaN; });
+      ipiatest::Choose(f, 0, 0, "w");
+      f->Modified();
+    });
+  refused("lack the field data",
+    [](Filter f) { f->SetControlPointsData(ipiatest::ToLine(ipiatest::WavePoints(30))); });
+  refused("Value 2 of the fairing weights \"FairingWeight\" is -1",
+    [](Filter f)
+    {
+      vtkNew<vtkPolyData> controls;
+      controls->DeepCopy(Output(f, 1));
+      controls->GetPointData()->GetArray("FairingWeight")->SetComponent(2, 0, -1);
+      f->SetControlPointsData(controls);
+    });
+  refused("on port 1 are not those of",
+    [](Filter f)
+    {
+      vtkNew<vtkPolyData> controls;
+      controls->DeepCopy(Output(f, 1));
+      controls->GetFieldData()->GetArray("Knots")->SetComponent(5, 0, 0.99);
+      f->SetControlPointsData(controls);
+    });
+  refused("not finite",
+    [](Filter f)
+    {
+      vtkNew<vtkPolyData> controls;
+      controls->DeepCopy(Output(f, 1));
+      controls->GetPoints()->SetPoint(4, 0, NaN, 0);
+      f->SetControlPointsData(controls);
+    });
+}
+
+void TestLines(Checks& checks)
+{
+  const auto refused = [&](const std::string& phrase, const std::vector<Vector3>& points,
+                         const std::function<void(CurveFilter)>& more = {})
+  {
+    CheckRefused<CurveFilter>(checks, phrase, phrase,
+      [&](CurveFilter f)
+      {
+        f->SetInputData(ipiatest::ToLine(points));
+        if (more)
+        {
+          more(f);
+        }
+      });
+  };
+  const auto good = ipiatest::WavePoints(30);
+  refused("needs 4 at least", ipiatest::WavePoints(3));
+  refused("needs 6 at least", ipiatest::WavePoints(5), [](CurveFilter f) { f->SetDegree(5); });
+  auto points = good;
+  points[7] = points[6];
+  refused("Points 6 and 7 follow each other", points);
+  points = good;
+  points[12][1] = NaN;
+  refused("Point 12 of line 0 is not finite", points);
+  points[12][1] = std::numeric_limits<double>::infinity();
+  refused("Point 12 of line 0 is not finite", points);
+  refused(
+    "NumberOfControlPoints is 31", good, [](CurveFilter f) { f->SetNumberOfControlPoints(31); });
+  refused(
+    "NumberOfControlPoints is 2", good, [](CurveFilter f) { f->SetNumberOfControlPoints(2); });
+  refused("The knot 1.5 cannot be inserted", good, [](CurveFilter f) { f->InsertKnot(1.5); });
+  refused("The knot 0.5 would be there more than 3 times", good,
+    [](CurveFilter f)
+    {
+      for (int k = 0; k < 4; ++k)
+      {
+        f->InsertKnot(0.5);
+      }
+    });
+  refused("those of 1 curves, the input has 2 lines", good,
+    [&](CurveFilter f)
+    {
+      vtkNew<vtkPolyData> controls;
+      controls->DeepCopy(Output(f, 1));
+      f->SetControlPointsData(controls);
+      vtkPolyData* data = vtkPolyData::SafeDownCast(f->GetInputDataObject(0, 0));
+      data->GetLines()->InsertNextCell({ 0, 1, 2, 3, 4, 5 });
+      data->Modified();
+    });
+  CheckRefused<CurveFilter>(checks, "has no lines", "no lines",
+    [](CurveFilter f)
+    {
+      auto data = ipiatest::ToLine(ipiatest::WavePoints(30));
+      data->SetLines(nullptr);
+      f->SetInputData(data);
+    });
+
+  const auto given = [&](
+                       const std::string& phrase, const std::function<double(vtkIdType)>& parameter)
+  {
+    CheckRefused<CurveFilter>(checks, phrase, phrase,
+      [&](CurveFilter f)
+      {
+        auto data = ipiatest::ToLine(good);
+        ipiatest::AddArray(data, "t", parameter);
+        f->SetInputData(data);
+        f->SetParametrizationToGiven();
+        ipiatest::Choose(f, 3, 0, "t");
+      });
+  };
+  const auto even = [](vtkIdType k) { return static_cast<double>(k) / 29; };
+  given("The parameters of line 0 fall", [&](vtkIdType k) { return k == 9 ? 0.2 : even(k); });
+  given("The parameter of point 29 is 1.1", [&](vtkIdType k) { return k == 29 ? 1.1 : even(k); });
+  given("The parameter of point 4 is nan", [&](vtkIdType k) { return k == 4 ? NaN : even(k); });
+  given("All parameters of line 0 are 0.5", [](vtkIdType) { return 0.5; });
+  given(
+    "more than Degree knots coincide", [](vtkIdType k) { return k == 0 ? 0
+                                                           : k == 29   ? 1
+                                                                       : 0.5; });
+}
+
+void TestGrids(Checks& checks)
+{
+  const auto refused = [&](const std::string& phrase, vtkDataObject* data,
+                         const std::function<void(SurfaceFilter)>& more = {})
+  {
+    CheckRefused<SurfaceFilter>(checks, phrase, phrase,
+      [&](SurfaceFilter f)
+      {
+        f->SetInputDataObject(data);
+        if (more)
+        {
+          more(f);
+        }
+      });
+  };
+  refused("needs 16 at least", ipiatest::WavyGrid(3, 3));
+  refused("The grid has 3 points along v", ipiatest::WavyGrid(20, 3));
+  refused("NumberOfControlPoints along u is 21", ipiatest::WavyGrid(20, 20),
+    [](SurfaceFilter f) { f->SetNumberOfControlPoints(21, 5); });
+  refused("NumberOfControlPoints along v is -3", ipiatest::WavyGrid(20, 20),
+    [](SurfaceFilter f) { f->SetNumberOfControlPoints(5, -3); });
+  refused("whose points have no order", ipiatest::ToLine(ipiatest::WavePoints(30)));
+  auto solid = ipiatest::WavyGrid(20, 20);
+  solid->SetDimensions(10, 10, 4);
+  refused("has dimensions (10, 10, 4)", solid);
+  auto bad = ipiatest::WavyGrid(20, 20);
+  bad->GetPoints()->SetPoint(77, NaN, 0, 0);
+  refused("Point 77 is not finite", bad);
+  refused("points of lines 4 and 5",
+    ipiatest::ToGrid(20, 20,
+      [](double u, double v) {
+        return Vector3{ std::abs(u - 5.0 / 19) < 1e-9 ? 4.0 / 19 : u, v, 0 };
+      }));
+  refused("points are equal",
+    ipiatest::ToGrid(20, 20,
+      [](double, double) {
+        return Vector3{ 1, 2, 3 };
+      }));
+  refused("The knot 0 cannot be inserted", ipiatest::WavyGrid(20, 20),
+    [](SurfaceFilter f) { f->InsertKnot(1, 0); });
+
+  const auto given = [&](const std::string& phrase, double u, double v)
+  {
+    refused(phrase, ipiatest::WavyGrid(10, 10),
+      [&](SurfaceFilter f)
+      {
+        auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
+        vtkNew<vtkDoubleArray> uv;
+        uv->SetNumberOfComponents(2);
+        for (int k = 0; k < 100; ++k)
+        {
+          uv->InsertNextTuple2(k % 10 / 9.0, k / 10 / 9.0);
+        }
+        uv->SetTuple2(55, u, v);
+        data->GetPointData()->SetTCoords(uv);
+        f->SetParametrizationToGiven();
+      });
+  };
+  given("The parameter u of point 55 is 1.2", 1.2, 0.5);
+  given("The parameter v of point 55 is -0.1", 0.5, -0.1);
+  given("The parameter v of point 55 is nan", 0.5, NaN);
+  refused("more than 4 times the 400 points", ipiatest::WavyGrid(20, 20),
+    [](SurfaceFilter f)
+    {
+      auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
+      vtkNew<vtkDoubleArray> uv;
+      uv->SetNumberOfComponents(2);
+      for (int k = 0; k < 400; ++k)
+      {
+        uv->InsertNextTuple2(k % 20 / 19.0, k / 20 / 19.0);
+      }
+      data->GetPointData()->SetTCoords(uv);
+      f->SetParametrizationToGiven();
+      f->SetNumberOfControlPoints(100000, 100000);
+    });
+}
+
+template <typename Filter>
+void TestWarning(Checks& checks, const std::string& name)
+{
+  Filter filter = WarmFilter<Filter>();
+  vtkNew<ipiatest::MessageObserver> messages;
+  messages->Watch(filter);
+  filter->SetMaximumNumberOfIterations(2);
+  filter->Update();
+  messages->CheckOneWarning(checks, "did not reach the tolerance", name + ", two iterations");
+  checks.That(ipiatest::AllOutputsAreFinite(filter), name + ": the result is there");
+  checks.Equal(filter->GetNumberOfIterationsUsed(), 2, name + ": iterations");
+  // Who asks for a number of iterations gets it without a word.
+  filter->SetTolerance(0);
+  filter->Update();
+  messages->CheckSilence(checks, name + ", no tolerance");
+}
+
+/// The fit by which control points are chosen is all but energy, which takes more iterations than
+/// the round that follows.
+void TestChoiceWarning(Checks& checks)
+{
+  auto filter = WarmFilter<CurveFilter>();
+  filter->SetAutomaticFairingToCurvatureVariation();
+  filter->SetFairingWeight(0.999);
+  filter->SetAutomaticShare(1);
+  filter->SetAutomaticFairingWeight(1e-9);
+  filter->SetTolerance(1e-3);
+  filter->SetMaximumNumberOfIterations(15);
+  vtkNew<ipiatest::MessageObserver> messages;
+  messages->Watch(filter);
+  filter->Update();
+  messages->CheckOneWarning(checks, "by which AutomaticFairing chose", "unfinished choice");
+}
+
+template <typename Filter>
+void TestAbort(Checks& checks, const std::string& name)
+{
+  for (const double share : { 0.0, 0.3, 0.85, 1.0 })
+  {
+    Filter filter = WarmFilter<Filter>();
+    filter->SetTolerance(0);
+    filter->SetMaximumNumberOfIterations(100);
+    vtkNew<ipiatest::ProgressObserver> progress;
+    progress->AbortAt = share;
+    const unsigned long tag = filter->AddObserver(vtkCommand::ProgressEvent, progress);
+    vtkNew<ipiatest::MessageObserver> messages;
+    messages->Watch(filter);
+    filter->Update();
+    const std::string what = Text(name, ", abort at ", share);
+    messages->CheckSilence(checks, what);
+    checks.That(ipiatest::AllOutputsAreEmpty(filter), what + ": outputs are empty");
+    const auto late = std::count_if(progress->Values.begin(), progress->Values.end(),
+      [&](double value) { return value >= share; });
+    checks.AtMost(static_cast<double>(late), 2, what + ": reports after it");
+    filter->RemoveObserver(tag);
+    filter->SetAbortExecute(0);
+    filter->Modified();
+    filter->Update();
+    checks.That(ipiatest::AllOutputsAreFinite(filter), what + ": the next update is a whole one");
+  }
+  Filter filter = WarmFilter<Filter>();
+  filter->Modified();
+  vtkNew<ipiatest::ProgressObserver> progress;
+  filter->AddObserver(vtkCommand::ProgressEvent, progress);
+  filter->Update();
+  progress->CheckRise(checks, name + ": progress");
+}
+
+/// A second input is as for a new object, and refusals leave no trace.
+void TestReuse(Checks& checks)
+{
+  auto used = WarmFilter<CurveFilter>();
+  vtkNew<ipiatest::MessageObserver> messages;
+  messages->Watch(used);
+  used->SetInputData(ipiatest::ToLine(ipiatest::WavePoints(2)));
+  used->Update();
+  messages->Clear();
+  auto line = ipiatest::ToLine(ipiatest::StarfishPoints(90, 0.01), true);
+  used->SetInputData(line);
+  used->Update();
+  messages->CheckSilence(checks, "reuse");
+  auto fresh = CurveFilter::New();
+  fresh->SetInputData(line);
+  fresh->Update();
+  checks.That(ipiatest::SameBits(used, fresh), "reuse: as a new object");
+
+  auto grid = WarmFilter<SurfaceFilter>();
+  auto data = ipiatest::WavyGrid(31, 17, 0.01);
+  grid->SetInputData(data);
+  grid->Update();
+  auto other = SurfaceFilter::New();
+  other->SetInputData(data);
+  other->Update();
+  checks.That(ipiatest::SameBits(grid, other), "surface reuse: as a new object");
+}
+}
+
+int TestFairingPIARefusals(int, char*[])
+{
+  Checks checks;
+  vtkNew<ipiatest::MessageObserver> window;
+  ipiatest::WindowWatch watch(window);
+  TestParameters<CurveFilter>(checks, "curve");
+  TestParameters<SurfaceFilter>(checks, "surface");
+  TestLines(checks);
+  TestGrids(checks);
+  TestWarning<CurveFilter>(checks, "curve");
+  TestWarning<SurfaceFilter>(checks, "surface");
+  TestChoiceWarning(checks);
+  TestAbort<CurveFilter>(checks, "curve");
+  TestAbort<SurfaceFilter>(checks, "surface");
+  TestReuse(checks);
+  return checks.Result();
+}
