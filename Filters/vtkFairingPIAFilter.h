@@ -145,7 +145,8 @@ public:
   ///@{
   /**
    * The AutomaticShare of the control points for which the measure is largest get
-   * AutomaticFairingWeight. Default Off.
+   * AutomaticFairingWeight. Default Off. In a later round the weights on port 1 are the user's;
+   * SetInputArrayToProcess(1, 1, 0, ..., "") takes none from there.
    */
   vtkSetClampMacro(AutomaticFairing, int, Off, CurvatureVariation);
   vtkGetMacro(AutomaticFairing, int);

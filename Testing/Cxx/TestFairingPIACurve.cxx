@@ -284,6 +284,22 @@ void TestAutomaticFairing(Checks& checks)
     }
     checks.Equal(raised, 4, Text("choice ", choice, ": control points"));
     checks.That(near, Text("choice ", choice, ": they are at the dent"));
+
+    // A later round has the weights of this one, or chooses anew.
+    vtkNew<vtkPolyData> controls;
+    controls->DeepCopy(Output(filter, 1));
+    ipiatest::AddArray(controls, "FairingWeight", [](vtkIdType) { return 1e-5; });
+    auto later = NewFilter(ipiatest::ToLine(points));
+    later->SetControlPointsData(controls);
+    later->SetFairingWeight(1e-9);
+    later->SetAutomaticFairing(choice);
+    later->Update();
+    checks.Equal(PointArray(later, 1, "FairingWeight")->GetComponent(20, 0), 1e-5, "given weight");
+    ipiatest::Choose(later, 1, 1, "");
+    later->Update();
+    double range[2];
+    PointArray(later, 1, "FairingWeight")->GetRange(range);
+    checks.That(range[0] == 1e-9 && range[1] == 1e-4, "weights chosen anew");
     checks.AtMost(
       filter->GetFairingEnergy(), 0.5 * plainEnergy, Text("choice ", choice, ": energy"));
   }
