@@ -65,14 +65,14 @@ def test_every_property_is_documented():
 def test_curve_gets_fairer():
     source = t.producer(uneven_circle())
     energies = []
-    for weight in (1e-8, 1e-3):
+    for weight in (1e-8, 1e-6):
         curve = simple.FairingPIACurve(Input=source, FairingWeight=weight, Solver="Sparse direct")
         with t.Messages() as messages:
             fair, controls, data = results(curve)
         assert not messages.errors, messages.errors
         assert controls.GetPointData().GetArray("FairingWeight") and data.GetNumberOfPoints() == 201
         radius = np.linalg.norm(vtk_to_numpy(fair.GetPoints().GetData()), axis=1)
-        assert np.abs(radius - t.RADIUS).max() < 0.05, radius
+        assert np.abs(radius - t.RADIUS).max() < 0.05, np.abs(radius - t.RADIUS).max()
         energies.append(value(fair, "FairingEnergy"))
     assert energies[1] < energies[0], energies
 
@@ -80,7 +80,7 @@ def test_curve_gets_fairer():
 def test_surface_gets_fairer():
     source = t.producer(uneven_wave())
     energies = []
-    for weight in (1e-8, 1e-3):
+    for weight in (1e-8, 1e-6):
         surface = simple.FairingPIASurface(Input=source, FairingWeight=weight, Solver="Sparse direct")
         with t.Messages() as messages:
             fair, _, _ = results(surface)
