@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IPIAControlLattice.h"
 
+#include "Core/RationalSolver.h"
+
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSignedCharArray.h"
+#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +17,58 @@ namespace ipia
 {
 namespace
 {
+/// One value per coefficient as a point array.
+vtkSmartPointer<vtkDoubleArray> newPointArray(const char* name, const Vector& values)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  array->SetNumberOfTuples(values.size());
+  std::copy_n(values.data(), values.size(), array->GetPointer(0));
+  return array;
+}
+
+/// Reads one value per coefficient. Returns what is wrong, or an empty string.
+std::string readPointArray(vtkPointData* data, const char* name, std::int64_t size, Vector& values)
+{
+  vtkDataArray* array = data->GetArray(name);
+  if (!array || array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != size)
+  {
+    return std::string("the control lattice has no point array ") + name +
+      " with one value per point";
+  }
+  values.resize(size);
+  for (std::int64_t i = 0; i < size; ++i)
+  {
+    values[i] = array->GetComponent(i, 0);
+  }
+  return {};
+}
+
+/// Reads the weights of a rational spline, if it is one. Returns what is wrong, or an empty string.
+template <int Dim>
+std::string readWeights(vtkPointData* data, const Lattice<Dim>& lattice, Vector& weights)
+{
+  if (!data->HasArray(WeightArrayName))
+  {
+    return {};
+  }
+  std::string wrong =
+    readPointArray(data, WeightArrayName, lattice.numberOfCoefficients(), weights);
+  if (wrong.empty() &&
+    !std::all_of(
+      weights.begin(), weights.end(), [](double w) { return w >= 0 && std::isfinite(w); }))
+  {
+    wrong = std::string("the point array ") + WeightArrayName +
+      " of the control lattice has values that are negative or not finite";
+  }
+  if (wrong.empty() && !hasPositiveDenominators(lattice, weights))
+  {
+    wrong = std::string("the point array ") + WeightArrayName +
+      " of the control lattice is 0 all around a knot, where f would be 0 / 0";
+  }
+  return wrong;
+}
+
 void addFarField(const FarField& far, vtkFieldData* field)
 {
   vtkNew<vtkSignedCharArray> signs;
@@ -86,12 +141,11 @@ void toControlLattice(
   image->SetOrigin(origin);
   image->SetSpacing(spacing);
 
-  vtkNew<vtkDoubleArray> coefficients;
-  coefficients->SetName(CoefficientArrayName);
-  coefficients->SetNumberOfTuples(lattice.numberOfCoefficients());
-  std::copy_n(
-    spline.coefficients().data(), lattice.numberOfCoefficients(), coefficients->GetPointer(0));
-  image->GetPointData()->SetScalars(coefficients);
+  image->GetPointData()->SetScalars(newPointArray(CoefficientArrayName, spline.coefficients()));
+  if (spline.isRational())
+  {
+    image->GetPointData()->AddArray(newPointArray(WeightArrayName, spline.weights()));
+  }
 
   if (!spline.farField().Sign.empty())
   {
@@ -131,26 +185,26 @@ std::string fromControlLattice(
     placement.Origin[axis] += lattice.Spacing[a] * (1 + image->GetExtent()[2 * axis]);
   }
 
-  vtkDataArray* values = image->GetPointData()->GetArray(CoefficientArrayName);
-  if (!values || values->GetNumberOfComponents() != 1 ||
-    values->GetNumberOfTuples() != lattice.numberOfCoefficients())
-  {
-    return std::string("the control lattice has no point array ") + CoefficientArrayName +
-      " with one value per point";
-  }
-  Vector coefficients(lattice.numberOfCoefficients());
-  for (std::int64_t i = 0; i < coefficients.size(); ++i)
-  {
-    coefficients[i] = values->GetComponent(i, 0);
-  }
-
+  Vector coefficients, weights;
   FarField far;
-  std::string wrong = readFarField(image->GetFieldData(), lattice.numberOfBoxes(), far);
+  std::string wrong = readPointArray(
+    image->GetPointData(), CoefficientArrayName, lattice.numberOfCoefficients(), coefficients);
+  if (wrong.empty())
+  {
+    wrong = readWeights(image->GetPointData(), lattice, weights);
+  }
+  if (wrong.empty())
+  {
+    wrong = readFarField(image->GetFieldData(), lattice.numberOfBoxes(), far);
+  }
   if (!wrong.empty())
   {
     return wrong;
   }
-  spline = std::make_unique<ImplicitSpline<Dim>>(lattice, std::move(coefficients), std::move(far));
+  spline = weights.size() > 0
+    ? std::make_unique<ImplicitSpline<Dim>>(
+        lattice, std::move(coefficients), std::move(weights), std::move(far))
+    : std::make_unique<ImplicitSpline<Dim>>(lattice, std::move(coefficients), std::move(far));
   return {};
 }
 

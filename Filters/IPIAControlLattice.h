@@ -60,6 +60,7 @@ struct Placement
 
 /// Names of the arrays of a control lattice.
 constexpr const char* CoefficientArrayName = "Coefficient";
+constexpr const char* WeightArrayName = "Weight";
 constexpr const char* FarFieldArrayName = "FarField";
 constexpr const char* FarFieldMagnitudeArrayName = "FarFieldMagnitude";
 

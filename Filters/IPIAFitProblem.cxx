@@ -26,6 +26,9 @@ constexpr double MostAutomaticSamples = 268435456; // 2^28
 constexpr double MemoryShare = 0.9;
 /// Bytes that the fit needs per coefficient and per row, all its arrays together.
 constexpr double BytesPerCoefficient = 96, BytesPerRow = 160;
+/// And where the spline is rational: of its iteration per coefficient, and per sample of the slices
+/// that are sampled at a time.
+constexpr double BytesPerWeight = 64, BytesPerRationalSample = 16, RationalSlices = 16;
 /// And in bricks: per brick that is stored, and per brick of the whole lattice.
 constexpr double BytesPerBrick = 2048, BytesPerAbsentBrick = 16;
 /// Bricks around a brick with data, and layers of them on both sides of a surface that crosses the
@@ -45,6 +48,11 @@ bool FitParameters::isClassic() const
   return this->NumberOfLevels == 1 && this->NormalConstraint != vtkIPIAImplicitFitter::Gradient;
 }
 
+bool FitParameters::isRational() const
+{
+  return this->BasisType == vtkIPIAImplicitFitter::UniformRational;
+}
+
 void FitProblem::Prepare(const FitParameters& parameters)
 {
   this->Refusal = this->Cloud.Refusal;
@@ -55,8 +63,10 @@ void FitProblem::Prepare(const FitParameters& parameters)
       action();
     }
   };
+  step([&] { this->CheckBasisAndOscillation(parameters); });
   step([&] { this->CheckCombination(parameters); });
   step([&] { this->ChooseDimension(parameters); });
+  step([&] { this->CheckPrintedStep(parameters); });
   step(
     [&]
     {
@@ -84,6 +94,67 @@ bool FitProblem::staysInBricks(const FitParameters& parameters) const
   const auto& samples = parameters.SampleDimensions;
   return parameters.FunctionOnly && !parameters.isClassic() && this->Dimension == 3 &&
     std::all_of(samples.begin(), samples.end(), [](int n) { return n == 0; });
+}
+
+void FitProblem::CheckBasisAndOscillation(const FitParameters& parameters)
+{
+  using Fitter = vtkIPIAImplicitFitter;
+  const bool rational = parameters.isRational();
+  for (const auto& [name, value] : { std::make_pair("WeightStepSize", parameters.WeightStepSize),
+         std::make_pair("OscillationWeight", parameters.OscillationWeight) })
+  {
+    if (!std::isfinite(value))
+    {
+      this->Refusal = text(name, " is ", value, "; it must be a finite number, 0 or more.");
+      return;
+    }
+  }
+  if (!rational && parameters.OscillationWeight == 0)
+  {
+    return;
+  }
+  const char* what = rational ? "BasisType UniformRational" : "OscillationWeight";
+  const char* without = rational ? "set BasisType to BSpline" : "leave OscillationWeight 0";
+  const bool progressive = parameters.Solver == Fitter::ProgressiveIteration;
+  if (!parameters.isClassic())
+  {
+    this->Refusal = text(what,
+      " belongs to a single level with offset rows; the hierarchy fits a B-spline and smooths it "
+      "by "
+      "FairingWeight. Set NumberOfLevels to 1 and NormalConstraint to an offset, or ",
+      without, ".");
+  }
+  else if (parameters.FairingWeight > 0 || !this->Cloud.LocalFairing.empty())
+  {
+    this->Refusal = text("FairingWeight and local fairing weights belong to the hierarchy, ", what,
+      " to a single level with offset rows. Leave the fairing unset, or ", without,
+      " and set NumberOfLevels to 0.");
+  }
+  else if (rational && !progressive)
+  {
+    this->Refusal =
+      "BasisType UniformRational is fitted by ProgressiveIteration; ConjugateGradient "
+      "solves linear problems, and f is not linear in the weights. Set Solver to "
+      "ProgressiveIteration, or BasisType to BSpline.";
+  }
+  else if (parameters.OscillationWeight > 0 && parameters.OscillationStep == Fitter::AsPrinted &&
+    !progressive)
+  {
+    this->Refusal = "OscillationStep AsPrinted is a step of ProgressiveIteration. Set Solver to "
+                    "ProgressiveIteration, or OscillationStep to Energy.";
+  }
+}
+
+void FitProblem::CheckPrintedStep(const FitParameters& parameters)
+{
+  const double limit = 1. / (8 * this->Dimension);
+  if (parameters.OscillationStep == vtkIPIAImplicitFitter::AsPrinted &&
+    parameters.OscillationWeight >= limit)
+  {
+    this->Refusal = text("OscillationWeight is ", parameters.OscillationWeight,
+      "; with OscillationStep AsPrinted ", "it must be less than 1 / (8 Dimension) = ", limit,
+      ", or the iteration diverges. Reduce OscillationWeight, or set OscillationStep to Energy.");
+  }
 }
 
 void FitProblem::CheckCombination(const FitParameters& parameters)
@@ -285,6 +356,14 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
   else
   {
     needed += coefficients * BytesPerCoefficient + samples * arrays * scalar;
+    if (parameters.isRational())
+    {
+      const int last = this->FlatAxis == 2 ? 1 : 2;
+      const double slices = this->WholeExtent[2 * last + 1] + 1.;
+      needed += coefficients * BytesPerWeight +
+        samples * std::min(1.0, RationalSlices / slices) * BytesPerRationalSample *
+          (parameters.GenerateGradient ? 2 : 1);
+    }
   }
   const double available = memoryOfMachine();
   if (needed > MemoryShare * available)

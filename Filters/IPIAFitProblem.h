@@ -23,6 +23,10 @@ struct FitParameters
   double OffsetValue;
   double InwardOffsetDistance;
   double InwardOffsetValue;
+  int BasisType;
+  double WeightStepSize;
+  double OscillationWeight;
+  int OscillationStep;
   double FairingWeight;
   int FairingOrder;
   int Solver;
@@ -38,6 +42,8 @@ struct FitParameters
 
   /// The papers' method on one level, with offset rows; otherwise the fit is hierarchical.
   bool isClassic() const;
+
+  bool isRational() const;
 };
 
 /**
@@ -68,6 +74,8 @@ public:
 
 private:
   void CheckCombination(const FitParameters& parameters);
+  void CheckBasisAndOscillation(const FitParameters& parameters);
+  void CheckPrintedStep(const FitParameters& parameters);
   void ChooseDimension(const FitParameters& parameters);
   template <int Dim>
   void ChooseLattice(const FitParameters& parameters);

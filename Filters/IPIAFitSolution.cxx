@@ -48,6 +48,23 @@ Vector offsetDistances(const PointCloud& cloud, double given, double automatic, 
                    : toVector(cloud.offsetDistances(automatic, side));
 }
 
+/// What the user can do about an iteration that diverged.
+std::string whyDiverged(const SolverResult& solved, const FitParameters& parameters)
+{
+  const std::string rose =
+    text(": the energy rose in iteration ", solved.NumberOfIterations, ". Reduce ");
+  const bool printed = parameters.OscillationWeight > 0 &&
+    parameters.OscillationStep == vtkIPIAImplicitFitter::AsPrinted;
+  if (parameters.StepSize > 0)
+  {
+    return text("The iteration diverges with StepSize ", solved.StepSize, rose,
+      "StepSize, or leave it 0 for 2 / max_i sum_k w_k B_i(x_k)",
+      printed ? ", or set OscillationStep to Energy." : ".");
+  }
+  return text("The iteration diverges with OscillationWeight ", parameters.OscillationWeight,
+    " and OscillationStep AsPrinted", rose, "OscillationWeight, or set OscillationStep to Energy.");
+}
+
 StoppingRule stoppingRule(const FitParameters& parameters)
 {
   return parameters.StoppingRule == vtkIPIAImplicitFitter::EnergyChange
@@ -148,6 +165,12 @@ void solveClassic(const Lattice<Dim>& lattice, const FitProblem& problem,
   options.Solver.Tolerance = parameters.Tolerance;
   options.Solver.Rule = stoppingRule(parameters);
   options.Solver.StepSize = parameters.StepSize;
+  options.Type = parameters.isRational() ? Basis::UniformRational : Basis::BSpline;
+  options.Rational.WeightStepSize = parameters.WeightStepSize;
+  options.Solver.Oscillation.Weight = parameters.OscillationWeight;
+  options.Solver.Oscillation.Step = parameters.OscillationStep == vtkIPIAImplicitFitter::AsPrinted
+    ? OscillationStep::AsPrinted
+    : OscillationStep::Energy;
   options.FarField.Magnitude =
     parameters.OffsetValue > 0 ? parameters.OffsetValue : solution.OffsetDistance;
 
@@ -156,9 +179,7 @@ void solveClassic(const Lattice<Dim>& lattice, const FitProblem& problem,
   solution.Aborted = solved.Status == SolverStatus::Aborted;
   if (solved.Status == SolverStatus::Diverged)
   {
-    solution.Error = text("The iteration diverges with StepSize ", solved.StepSize,
-      ": the energy rose in iteration ", solved.NumberOfIterations,
-      ". Reduce StepSize, or leave it 0 for 2 / max_i sum_k w_k B_i(x_k).");
+    solution.Error = whyDiverged(solved, parameters);
   }
   const int mixed = fitted.Function.farField().NumberOfMixedRegions;
   if (mixed > 0)
@@ -174,6 +195,7 @@ void solveClassic(const Lattice<Dim>& lattice, const FitProblem& problem,
   solution.AverageError = fitted.AverageError;
   solution.MaximumError = fitted.MaximumError;
   solution.Oscillation = fitted.Oscillation;
+  solution.WeightStepSize = fitted.WeightStepSize;
 }
 
 /// Points and gradient rows, or offset rows in their place as extra rows.

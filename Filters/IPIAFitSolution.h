@@ -24,6 +24,7 @@ struct FitSolution
   double AverageError = 0;
   double MaximumError = 0;
   double Oscillation = 0;     ///< of a single level with offset rows, 0 otherwise
+  double WeightStepSize = 0;  ///< the smallest that a step of the weights was taken with
   double OffsetDistance = 0;  ///< of the offset rows, 0 without
   int NumberOfLevels = 1;     ///< of the hierarchy
   double Noise = 0;           ///< see HierarchicalResult

@@ -117,6 +117,10 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
   , OffsetValue(0)
   , InwardOffsetDistance(0)
   , InwardOffsetValue(0)
+  , BasisType(BSpline)
+  , WeightStepSize(0.01)
+  , OscillationWeight(0)
+  , OscillationStep(Energy)
   , FairingWeight(-1)
   , FairingOrder(2)
   , Solver(ConjugateGradient)
@@ -158,6 +162,10 @@ ipia::FitParameters vtkIPIAImplicitFitter::Parameters() const
   p.OffsetValue = this->OffsetValue;
   p.InwardOffsetDistance = this->InwardOffsetDistance;
   p.InwardOffsetValue = this->InwardOffsetValue;
+  p.BasisType = this->BasisType;
+  p.WeightStepSize = this->WeightStepSize;
+  p.OscillationWeight = this->OscillationWeight;
+  p.OscillationStep = this->OscillationStep;
   p.FairingWeight = this->FairingWeight;
   p.FairingOrder = this->FairingOrder;
   p.Solver = this->Solver;
@@ -356,8 +364,8 @@ bool sampleInto(ArrayType* array, int component, const ipia::ImplicitSpline<Dim>
 void vtkIPIAImplicitFitter::ResetResults()
 {
   this->NumberOfIterationsUsed = 0;
-  this->StepSizeUsed = this->Energy = this->AverageError = this->MaximumError = 0;
-  this->Oscillation = this->OffsetDistanceUsed = 0;
+  this->StepSizeUsed = this->EnergyReached = this->AverageError = this->MaximumError = 0;
+  this->Oscillation = this->OffsetDistanceUsed = this->WeightStepSizeUsed = 0;
   this->NumberOfLevelsUsed = 0;
   this->NoiseFound = this->SmoothingLengthUsed = 0;
   std::fill_n(this->GridSizeUsed, 3, 0);
@@ -392,10 +400,11 @@ bool vtkIPIAImplicitFitter::FitInDimension()
   }
   this->NumberOfIterationsUsed = slot->Solver.NumberOfIterations;
   this->StepSizeUsed = slot->Solver.StepSize;
-  this->Energy = slot->Solver.Energy;
+  this->EnergyReached = slot->Solver.Energy;
   this->AverageError = slot->AverageError;
   this->MaximumError = slot->MaximumError;
   this->Oscillation = slot->Oscillation;
+  this->WeightStepSizeUsed = slot->WeightStepSize;
   this->OffsetDistanceUsed = slot->OffsetDistance;
   this->NumberOfLevelsUsed = slot->NumberOfLevels;
   this->NoiseFound = slot->Noise;
@@ -420,12 +429,12 @@ bool vtkIPIAImplicitFitter::Fit()
     appendArrayIdentity(array, identity);
   }
   std::vector<double> parameters{ this->OffsetDistance, this->OffsetValue,
-    this->InwardOffsetDistance, this->InwardOffsetValue, this->FairingWeight, this->Tolerance,
-    this->StepSize };
-  for (int value :
-    { this->NormalConstraint, this->FairingOrder, this->Solver, this->NumberOfLevels,
-      this->MaximumNumberOfIterations, this->StoppingRule, static_cast<int>(this->GenerateSupport),
-      problem.FlatAxis, static_cast<int>(problem.staysInBricks(this->Parameters())) })
+    this->InwardOffsetDistance, this->InwardOffsetValue, this->WeightStepSize,
+    this->OscillationWeight, this->FairingWeight, this->Tolerance, this->StepSize };
+  for (int value : { this->NormalConstraint, this->BasisType, this->OscillationStep,
+         this->FairingOrder, this->Solver, this->NumberOfLevels, this->MaximumNumberOfIterations,
+         this->StoppingRule, static_cast<int>(this->GenerateSupport), problem.FlatAxis,
+         static_cast<int>(problem.staysInBricks(this->Parameters())) })
   {
     parameters.push_back(value);
   }
@@ -620,10 +629,11 @@ void vtkIPIAImplicitFitter::WriteResults(vtkFieldData* field) const
 {
   addResult(field, "NumberOfIterationsUsed", this->NumberOfIterationsUsed);
   addResult(field, "StepSizeUsed", this->StepSizeUsed);
-  addResult(field, "Energy", this->Energy);
+  addResult(field, "Energy", this->EnergyReached);
   addResult(field, "AverageError", this->AverageError);
   addResult(field, "MaximumError", this->MaximumError);
   addResult(field, "Oscillation", this->Oscillation);
+  addResult(field, "WeightStepSizeUsed", this->WeightStepSizeUsed);
   addResult(field, "OffsetDistanceUsed", this->OffsetDistanceUsed);
   addResult(field, "NumberOfLevelsUsed", this->NumberOfLevelsUsed);
   addResult(field, "NoiseFound", this->NoiseFound);
@@ -758,6 +768,10 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OffsetValue: " << this->OffsetValue << "\n";
   os << indent << "InwardOffsetDistance: " << this->InwardOffsetDistance << "\n";
   os << indent << "InwardOffsetValue: " << this->InwardOffsetValue << "\n";
+  os << indent << "BasisType: " << this->BasisType << "\n";
+  os << indent << "WeightStepSize: " << this->WeightStepSize << "\n";
+  os << indent << "OscillationWeight: " << this->OscillationWeight << "\n";
+  os << indent << "OscillationStep: " << this->OscillationStep << "\n";
   os << indent << "FairingWeight: " << this->FairingWeight << "\n";
   os << indent << "FairingOrder: " << this->FairingOrder << "\n";
   os << indent << "Solver: " << this->Solver << "\n";
@@ -771,10 +785,11 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OutputScalarType: " << this->OutputScalarType << "\n";
   os << indent << "NumberOfIterationsUsed: " << this->NumberOfIterationsUsed << "\n";
   os << indent << "StepSizeUsed: " << this->StepSizeUsed << "\n";
-  os << indent << "Energy: " << this->Energy << "\n";
+  os << indent << "Energy: " << this->EnergyReached << "\n";
   os << indent << "AverageError: " << this->AverageError << "\n";
   os << indent << "MaximumError: " << this->MaximumError << "\n";
   os << indent << "Oscillation: " << this->Oscillation << "\n";
+  os << indent << "WeightStepSizeUsed: " << this->WeightStepSizeUsed << "\n";
   os << indent << "OffsetDistanceUsed: " << this->OffsetDistanceUsed << "\n";
   os << indent << "NumberOfLevelsUsed: " << this->NumberOfLevelsUsed << "\n";
   os << indent << "NoiseFound: " << this->NoiseFound << "\n";

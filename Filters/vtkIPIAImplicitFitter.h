@@ -39,6 +39,17 @@
  * of least norm, (B^T W B)^+ B^T W b (theorem 3.4). Conjugate gradients reach the same limit in
  * fewer iterations.
  *
+ * ### Rational splines and oscillation
+ * With BasisType UniformRational (Huang, 2024)
+ *
+ *     f(x) = sum_i C_i R_i(x),   R_i(x) = w_i B_i(x) / sum_j w_j B_j(x),   w_i >= 0, 1 at first.
+ *
+ * Each iteration takes w <- max(w - tau grad_w E, 0) and then the step above with the collocation
+ * matrix of the R_i. OscillationWeight lambda adds the oscillation R(C) of the coefficients to the
+ * energy, so that f is smoother where no data are and has fewer extra sheets there, with either
+ * basis. Both belong to a single level with offset rows. Documentation/RationalSplines.md tells
+ * when they help.
+ *
  * f < 0 inside and f > 0 outside, where the normals point to, as for vtkImplicitFunction; near the
  * data f approximates signed distance in world units as long as OffsetValue is 0.
  *
@@ -74,11 +85,12 @@
  * below as field data. Origin and last point are the ends of the domain. Any sub-extent can be
  * asked for. Port 1: the points that were fitted, with all their arrays, and `Residual` (f) and
  * `Distance` (f / |grad f|). Port 2: the control lattice, a vtkImageData with point array
- * `Coefficient`, origin lo - h, spacing h and dimensions N, on domain [lo, hi], and the far field
+ * `Coefficient`, with UniformRational also `Weight`, origin lo - h, spacing h and dimensions N, on
+ * domain [lo, hi], and the far field
  * as field data: `FarField`, one signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1)
  * (2 (N_z - 3) + 1) boxes (no third factor in 2-D), x fastest, -1 or 1 where f is that sign times
  * `FarFieldMagnitude` (one double), 0 where the spline counts. vtkIPIAImplicitFunction takes it;
- * vtkImageBSplineInterpolator of degree 3 interpolates the spline.
+ * vtkImageBSplineInterpolator of degree 3 interpolates a spline without weights.
  *
  * ### Two dimensions
  * If all points lie in a plane perpendicular to an axis and their normals in that plane, f is a
@@ -99,6 +111,7 @@
  *
  * Y. F. Hamza, H. Lin, Z. Li: Implicit progressive-iterative approximation for curve and surface
  * reconstruction. Computer Aided Geometric Design 77, 2020.
+ * S. Huang: Implicit uniform rational spline reconstruction method with regularization term. 2024.
  *
  * @sa vtkIPIASurfaceReconstruction vtkIPIAImplicitFunction vtkFlyingEdges3D vtkFlyingEdges2D
  * vtkContourFilter vtkPCANormalEstimation vtkSignedDistance
@@ -232,6 +245,68 @@ public:
   vtkGetMacro(InwardOffsetValue, double);
   ///@}
 
+  /// The functions that f is a combination of.
+  enum BasisTypes
+  {
+    BSpline = 0,        ///< f = sum_i C_i B_i (default)
+    UniformRational = 1 ///< f = sum_i C_i w_i B_i / sum_i w_i B_i; a single level with offset rows
+  };
+
+  ///@{
+  /**
+   * The basis. UniformRational has a weight w_i >= 0 for each coefficient, found with it by
+   * ProgressiveIteration on a single level with offset rows; see "Rational splines" above. It is
+   * refused with levels, gradient rows, conjugate gradients or fairing. Default BSpline.
+   */
+  vtkSetClampMacro(BasisType, int, BSpline, UniformRational);
+  vtkGetMacro(BasisType, int);
+  void SetBasisTypeToBSpline() { this->SetBasisType(BSpline); }
+  void SetBasisTypeToUniformRational() { this->SetBasisType(UniformRational); }
+  ///@}
+
+  ///@{
+  /**
+   * Step size tau of the weights of UniformRational, in 1 / (units of f)^2, finite, >= 0; default
+   * 0.01. 0 leaves them 1. A step that would make a denominator 0 or the energy grow is taken with
+   * the first of tau / 2, tau / 4 ... that does not; WeightStepSizeUsed tells. Not used by BSpline.
+   */
+  vtkSetClampMacro(WeightStepSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(WeightStepSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * Weight lambda of the oscillation R(C), the sum over coefficients of the squared differences to
+   * their axis neighbours, which is then kept small together with E; finite, >= 0, without unit. 0
+   * (the default): none. On a single level with offset rows, with either basis; refused with levels
+   * or fairing.
+   */
+  vtkSetClampMacro(OscillationWeight, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(OscillationWeight, double);
+  ///@}
+
+  /// How OscillationWeight enters an iteration.
+  enum OscillationSteps
+  {
+    Energy = 0,   ///< the minimiser of E + lambda R, for any lambda (default)
+    AsPrinted = 1 ///< eq. 33 of the 2024 paper, for lambda < 1 / (8 Dimension)
+  };
+
+  ///@{
+  /**
+   * The step. With L C the sums of the differences to the neighbours (grad R = 4 L C) Energy takes
+   * C <- C + mu [B^T W (b - B C) - 2 lambda L C], mu = 2 / (max_i sum_k w_k B_i(x_k) + 8 Dimension
+   * lambda); conjugate gradients have the same limit. AsPrinted takes C <- C + mu B^T W (b - B C) -
+   * 4 lambda L C with the mu of lambda 0, whose limit minimises E + (2 lambda / mu) R; a fit is
+   * refused where lambda is not less than 1 / (8 Dimension) or that energy grows, and with
+   * ConjugateGradient. Default Energy.
+   */
+  vtkSetClampMacro(OscillationStep, int, Energy, AsPrinted);
+  vtkGetMacro(OscillationStep, int);
+  void SetOscillationStepToEnergy() { this->SetOscillationStep(Energy); }
+  void SetOscillationStepToAsPrinted() { this->SetOscillationStep(AsPrinted); }
+  ///@}
+
   ///@{
   /**
    * Weight tau of the fairing energy of levels finer than 32 cells, tau sum |D^r c|^2 over
@@ -302,7 +377,7 @@ public:
   enum StoppingRules
   {
     RelativeResidual = 0, ///< ||B^T W r|| / ||B^T W r0|| (default)
-    EnergyChange = 1      ///< |E_new - E_old|
+    EnergyChange = 1      ///< |E_new - E_old|, the rule of the 2024 paper
   };
 
   ///@{
@@ -319,7 +394,8 @@ public:
   /**
    * Step size mu of ProgressiveIteration; it converges for 0 < mu < 2 / lambda_max(B^T W B), beyond
    * that the fit is refused as soon as the energy rises. 0 (the default): 2 / max_i sum_k w_k
-   * B_i(x_k).
+   * B_i(x_k), with UniformRational the same of its own basis in each iteration, and see
+   * OscillationStep.
    */
   vtkSetClampMacro(StepSize, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(StepSize, double);
@@ -360,22 +436,26 @@ public:
    * "Get", with the array `ResidualHistory` of ||B^T W r|| / ||B^T W r0|| before the first and
    * after every iteration. All are 0 after a refused fit.
    *
-   * StepSizeUsed is 0 with ConjugateGradient. Energy is E = sum_k w_k r_k^2 over all rows, in the
-   * hierarchy with the weights that it gives them on the finest level, of which ResidualHistory is;
-   * AverageError and MaximumError are the mean of f^2 and the maximum of |f| at the points;
-   * Oscillation is R(C), the sum over coefficients of the squared differences to their axis
-   * neighbours, of a single level with offset rows; 0 otherwise. OffsetDistanceUsed is the distance
-   * that was aimed at, before rows were drawn nearer to their points. NoiseFound is the root mean
-   * square distance (world units) of the points from f = 0 on the finest level that they alone
-   * determine, 0 if they are too sparse for any or FairingWeight is set; SmoothingLengthUsed (world
-   * units) the length below which noise is smoothed away, 0 on clean data.
+   * StepSizeUsed is 0 with ConjugateGradient and that of the last iteration with UniformRational.
+   * Energy is E = sum_k w_k r_k^2 over all rows + OscillationWeight R(C), in the hierarchy with the
+   * weights that it gives them on the finest level, of which ResidualHistory is; AverageError and
+   * MaximumError are the mean of f^2 and the maximum of |f| at the points; Oscillation is R(C), the
+   * sum over coefficients of the squared differences to their axis neighbours, of a single level
+   * with offset rows; 0 otherwise. WeightStepSizeUsed is the smallest step size that the weights of
+   * UniformRational were changed with, WeightStepSize unless that was too large; 0 otherwise.
+   * OffsetDistanceUsed is the distance that was aimed at, before rows were drawn nearer to their
+   * points. NoiseFound is the root mean square distance (world units) of the points from f = 0 on
+   * the finest level that they alone determine, 0 if they are too sparse for any or FairingWeight
+   * is set; SmoothingLengthUsed (world units) the length below which noise is smoothed away, 0 on
+   * clean data.
    */
   vtkGetMacro(NumberOfIterationsUsed, int);
   vtkGetMacro(StepSizeUsed, double);
-  vtkGetMacro(Energy, double);
+  double GetEnergy() { return this->EnergyReached; }
   vtkGetMacro(AverageError, double);
   vtkGetMacro(MaximumError, double);
   vtkGetMacro(Oscillation, double);
+  vtkGetMacro(WeightStepSizeUsed, double);
   vtkGetMacro(OffsetDistanceUsed, double);
   vtkGetMacro(NumberOfLevelsUsed, int);
   vtkGetMacro(NoiseFound, double);
@@ -423,6 +503,10 @@ protected:
   double OffsetValue;
   double InwardOffsetDistance;
   double InwardOffsetValue;
+  int BasisType;
+  double WeightStepSize;
+  double OscillationWeight;
+  int OscillationStep;
   double FairingWeight;
   int FairingOrder;
   int Solver;
@@ -437,10 +521,11 @@ protected:
 
   int NumberOfIterationsUsed;
   double StepSizeUsed;
-  double Energy;
+  double EnergyReached;
   double AverageError;
   double MaximumError;
   double Oscillation;
+  double WeightStepSizeUsed;
   double OffsetDistanceUsed;
   int NumberOfLevelsUsed;
   double NoiseFound;

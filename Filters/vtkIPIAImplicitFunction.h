@@ -6,7 +6,7 @@
  * vtkIPIAImplicitFunction evaluates the function f that vtkIPIAImplicitFitter fits, without
  * sampling:
  *
- *     f(x) = sum_i C_i B_i(x),
+ *     f(x) = sum_i C_i B_i(x), or sum_i C_i w_i B_i(x) / sum_i w_i B_i(x) of a rational spline,
  *
  * with the tensor-product cubic B-splines B_i of the control lattice (eq. 3 and 5 of the paper
  * named below), and its exact gradient. f < 0 inside and f > 0 outside, as for every
@@ -53,7 +53,9 @@ public:
 
   /**
    * Take the function from a control lattice: point array `Coefficient` (one component, N_x N_y N_z
-   * values, N >= 4 on each axis but for one axis of 1 in 2-D). The domain is the lattice less one
+   * values, N >= 4 on each axis but for one axis of 1 in 2-D), and of a rational spline also point
+   * array `Weight` (of the same size, finite, >= 0, not 0 at all coefficients around a knot). The
+   * domain is the lattice less one
    * spacing at either end. Where the fit has a far field, the field data hold
    * - `FarField`, one component, for each box its sign, -1, 0 or 1; 0 where the spline counts. Box
    * i of an axis has the width h / 2 and the centre lo + i h / 2, i = 0 ... 2 (N - 3); x varies

@@ -33,6 +33,7 @@ public:
   /// @a support_i = sum_k B_i(x_k): the same without weights.
   void support(Vector& support) const;
 
+  const Lattice<Dim>& lattice() const { return this->Rows.lattice(); }
   int threads() const { return this->Threads; }
 
 private:

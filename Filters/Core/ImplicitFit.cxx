@@ -125,26 +125,6 @@ Vector valuesAt(const ImplicitSpline<Dim>& function, const Points<Dim>& position
 }
 
 template <int Dim>
-double oscillation(const Lattice<Dim>& lattice, const Vector& coefficients)
-{
-  double sum = 0;
-  std::int64_t stride = 1;
-  for (int a = 0; a < Dim; ++a)
-  {
-    for (std::int64_t i = 0; i + stride < coefficients.size(); ++i)
-    {
-      if (i / stride % lattice.Size[a] + 1 < lattice.Size[a])
-      {
-        const double difference = coefficients[i + stride] - coefficients[i];
-        sum += 2 * difference * difference;
-      }
-    }
-    stride *= lattice.Size[a];
-  }
-  return sum;
-}
-
-template <int Dim>
 Vector scaledSupport(const Lattice<Dim>& lattice, const Points<Dim>& positions, int threads)
 {
   const Vector none = Vector::Zero(positions.cols());
@@ -163,8 +143,17 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
   const CollocationOperator<Dim> collocation(rows, options.Threads);
 
   Vector coefficients = Vector::Zero(lattice.numberOfCoefficients());
-  const SolverResult solved =
-    solveLeastSquares(collocation, options.Solver, coefficients, progress);
+  RationalResult solution; // without weights where the basis has none
+  if (options.Type == Basis::UniformRational)
+  {
+    solution = solveRational(
+      rows, options.Solver, options.Rational, options.Threads, coefficients, progress);
+  }
+  else
+  {
+    solution.Solver = solveLeastSquares(collocation, options.Solver, coefficients, progress);
+  }
+  const SolverResult& solved = solution.Solver;
 
   Vector support;
   collocation.support(support);
@@ -179,12 +168,21 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
     const double probe = WitnessDistance * lattice.Spacing.maxCoeff();
     const Points<Dim> outside = withExtra<Dim>(input, input.Positions + probe * input.Normals, 1);
     const Points<Dim> inside = withExtra<Dim>(input, input.Positions - probe * input.Normals, -1);
-    far = computeFarField(
-      lattice, occupancy, coefficients, outside, inside, input.Positions, farOptions);
+    // It depends on signs alone, and a quotient has that of its numerator.
+    const Vector numerator =
+      solution.Weights.size() ? solution.Weights.cwiseProduct(coefficients).eval() : coefficients;
+    far =
+      computeFarField(lattice, occupancy, numerator, outside, inside, input.Positions, farOptions);
   }
 
-  FitResult<Dim> result{ ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far)),
-    solved, std::move(support), 0, 0, 0 };
+  FitResult<Dim> result;
+  result.Solver = solved;
+  result.Support = std::move(support);
+  result.WeightStepSize = solution.WeightStepSize;
+  result.Function = solution.Weights.size()
+    ? ImplicitSpline<Dim>(
+        lattice, std::move(coefficients), std::move(solution.Weights), std::move(far))
+    : ImplicitSpline<Dim>(lattice, std::move(coefficients), std::move(far));
   const Vector atPoints = valuesAt(result.Function, input.Positions, options.Threads);
   if (atPoints.size())
   {
@@ -197,8 +195,6 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
 
 template struct FitResult<2>;
 template struct FitResult<3>;
-template double oscillation<2>(const Lattice<2>&, const Vector&);
-template double oscillation<3>(const Lattice<3>&, const Vector&);
 template Vector scaledSupport<2>(const Lattice<2>&, const Points<2>&, int);
 template Vector scaledSupport<3>(const Lattice<3>&, const Points<3>&, int);
 template FitResult<2> fitImplicit<2>(

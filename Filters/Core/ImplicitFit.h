@@ -7,7 +7,7 @@
 #define ipia_ImplicitFit_h
 
 #include "ImplicitSpline.h"
-#include "LeastSquaresSolver.h"
+#include "RationalSolver.h"
 
 namespace ipia
 {
@@ -34,9 +34,17 @@ struct FitInput
   Vector ExtraValues;         ///< ... with their own target values
 };
 
+enum class Basis
+{
+  BSpline,        ///< f = sum_i c_i B_i
+  UniformRational ///< f = sum_i c_i w_i B_i / sum_i w_i B_i; SolverType::ProgressiveIteration only
+};
+
 struct FitOptions
 {
   SolverOptions Solver;
+  Basis Type = Basis::BSpline;
+  RationalOptions Rational;
   FarFieldOptions FarField; ///< Threshold 0: no far field
   int Threads = 0;
 };
@@ -51,6 +59,7 @@ struct FitResult
   double AverageError = 0; ///< E_ave, mean of f^2 over the points
   double MaximumError = 0; ///< E_max, max |f| over the points
   double Oscillation = 0;  ///< R(C), sum over coefficients of squared differences to each neighbour
+  double WeightStepSize = 0; ///< the smallest tau taken; 0 without weights
 };
 
 template <int Dim>
@@ -61,10 +70,6 @@ FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& inp
 /// points.
 template <int Dim>
 Vector scaledSupport(const Lattice<Dim>& lattice, const Points<Dim>& positions, int threads);
-
-/// R(C) = sum_i sum over the axis neighbours j of i of (c_j - c_i)^2; each edge counts twice.
-template <int Dim>
-double oscillation(const Lattice<Dim>& lattice, const Vector& coefficients);
 }
 
 #endif

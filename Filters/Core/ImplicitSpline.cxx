@@ -107,7 +107,7 @@ struct SampleGrid
   const Lattice<Dim>& ControlLattice;
   const double* Coefficients;
   const FarField& Far;
-  bool Derivative;
+  double Constants[2]; ///< in boxes of sign -1 and 1
   AxisTable X, Y, Z;
   SampleRow Row;
   /// The far field by runs of samples: for each row of boxes, [begin, end) and sign of each run.
@@ -453,7 +453,6 @@ struct ConstantKernel
     const SampleGrid<Dim>& grid, std::int64_t first, std::int64_t last, Scalar* values)
   {
     const std::int64_t n = grid.X.size(), rows = grid.Y.size();
-    const double magnitude = grid.Derivative ? 0.0 : grid.Far.Magnitude;
     for (std::int64_t z = first; z < last; ++z)
     {
       for (std::int64_t y = 0; y < rows; ++y)
@@ -465,7 +464,8 @@ struct ConstantKernel
           const auto& part = grid.Runs[r];
           if (part.Sign != 0)
           {
-            fill(out + part.Begin, out + part.End, static_cast<Scalar>(part.Sign * magnitude));
+            const double constant = grid.Constants[part.Sign > 0 ? 1 : 0];
+            fill(out + part.Begin, out + part.End, static_cast<Scalar>(constant));
           }
         }
       }
@@ -567,9 +567,17 @@ IPIA_INLINE double sumAt(const Lattice<Dim>& lattice, const double* coefficients
   return alongX(w[0], f);
 }
 
+/// What evaluation needs: @a Weights is nullptr where the spline is not rational, otherwise @a
+/// Coefficients are those of the numerator.
+struct Coefficients
+{
+  const double* Values;
+  const double* Weights;
+};
+
 /// f at a position anywhere, and its gradient unless nullptr.
 template <int Dim>
-IPIA_INLINE double evaluateAt(const Lattice<Dim>& lattice, const double* coefficients,
+IPIA_INLINE double evaluateAt(const Lattice<Dim>& lattice, const Coefficients& coefficients,
   const FarField& farField, const Point<Dim>& position, Point<Dim>* gradient)
 {
   const Nearest<Dim> nearest(lattice, position);
@@ -578,15 +586,29 @@ IPIA_INLINE double evaluateAt(const Lattice<Dim>& lattice, const double* coeffic
   {
     gradient->setZero();
   }
-  const double f =
-    constant != 0 ? constant : sumAt<Dim>(lattice, coefficients, nearest.At, gradient);
+  double f = constant;
+  if (constant == 0)
+  {
+    f = sumAt<Dim>(lattice, coefficients.Values, nearest.At, gradient);
+    if (coefficients.Weights)
+    {
+      Point<Dim> slope;
+      const double d =
+        sumAt<Dim>(lattice, coefficients.Weights, nearest.At, gradient ? &slope : nullptr);
+      f /= d;
+      if (gradient)
+      {
+        *gradient = (*gradient - f * slope) / d;
+      }
+    }
+  }
   return continueOutside<Dim>(nearest.Away, f, gradient);
 }
 
 template <int Dim>
 struct PointsKernel
 {
-  static IPIA_INLINE void run(const Lattice<Dim>& lattice, const double* coefficients,
+  static IPIA_INLINE void run(const Lattice<Dim>& lattice, const Coefficients& coefficients,
     const FarField& farField, const Points<Dim>& positions, Vector& values, Points<Dim>& gradients)
   {
     for (Eigen::Index k = 0; k < positions.cols(); ++k)
@@ -598,60 +620,33 @@ struct PointsKernel
     }
   }
 };
-}
 
+/// Slices along the last axis that a rational spline samples at a time.
 template <int Dim>
-ImplicitSpline<Dim>::ImplicitSpline(
-  const Lattice<Dim>& lattice, Vector coefficients, FarField farField)
-  : ControlLattice(lattice)
-  , Coefficients(std::move(coefficients))
-  , Far(std::move(farField))
+constexpr std::size_t SlabSize = Dim == 3 ? 16 : 1024;
+
+Coefficients coefficientsOf(
+  const Vector& polynomial, const Vector& numerator, const Vector& weights)
 {
+  return weights.size() ? Coefficients{ numerator.data(), weights.data() }
+                        : Coefficients{ polynomial.data(), nullptr };
 }
 
-template <int Dim>
-double ImplicitSpline<Dim>::value(const Point<Dim>& position) const
-{
-  return evaluateAt<Dim>(
-    this->ControlLattice, this->Coefficients.data(), this->Far, position, nullptr);
-}
-
-template <int Dim>
-Point<Dim> ImplicitSpline<Dim>::gradient(const Point<Dim>& position) const
-{
-  Point<Dim> g;
-  this->valueAndGradient(position, g);
-  return g;
-}
-
-template <int Dim>
-double ImplicitSpline<Dim>::valueAndGradient(const Point<Dim>& position, Point<Dim>& gradient) const
-{
-  return evaluateAt<Dim>(
-    this->ControlLattice, this->Coefficients.data(), this->Far, position, &gradient);
-}
-
-template <int Dim>
-void ImplicitSpline<Dim>::valuesAndGradients(
-  const Points<Dim>& positions, Vector& values, Points<Dim>& gradients) const
-{
-  values.resize(positions.cols());
-  gradients.resize(Dim, positions.cols());
-  dispatch<PointsKernel<Dim>>(
-    this->ControlLattice, this->Coefficients.data(), this->Far, positions, values, gradients);
-}
-
-template <int Dim>
-template <typename Scalar>
-bool ImplicitSpline<Dim>::sample(const AxisPositions<Dim>& positions, Scalar* values, int threads,
-  int derivativeAxis, const ProgressCallback& progress) const
+/**
+ * Samples of one spline, see ImplicitSpline::sample().
+ *
+ * @param constants  where the far field has the sign -1 and 1
+ */
+template <int Dim, typename Scalar>
+bool sampleSpline(const Lattice<Dim>& lattice, const Vector& coefficients, const FarField& farField,
+  std::array<double, 2> constants, const AxisPositions<Dim>& positions, Scalar* values, int threads,
+  int derivativeAxis, const ProgressCallback& progress)
 {
   const auto table = [&](int axis)
-  { return makeAxisTable(this->ControlLattice, axis, positions[axis], derivativeAxis == axis); };
+  { return makeAxisTable(lattice, axis, positions[axis], derivativeAxis == axis); };
   const AxisTable alongX = table(0);
-  SampleGrid<Dim> grid{ this->ControlLattice, this->Coefficients.data(), this->Far,
-    derivativeAxis >= 0, alongX, table(1), { { 0 }, { 0 }, { BasisValues{ 1 } } },
-    SampleRow(alongX), {}, {} };
+  SampleGrid<Dim> grid{ lattice, coefficients.data(), farField, { constants[0], constants[1] },
+    alongX, table(1), { { 0 }, { 0 }, { BasisValues{ 1 } } }, SampleRow(alongX), {}, {} };
   if (Dim == 3)
   {
     grid.Z = table(Dim - 1);
@@ -667,7 +662,7 @@ bool ImplicitSpline<Dim>::sample(const AxisPositions<Dim>& positions, Scalar* va
     for (std::int64_t first = 0; first < slices; first += BlockSlices)
     {
       const std::int64_t last = std::min(first + BlockSlices, slices);
-      if (!this->Far.Sign.empty())
+      if (!farField.Sign.empty())
       {
         constexpr std::int64_t chunk = 8;
 #pragma omp for
@@ -695,6 +690,134 @@ bool ImplicitSpline<Dim>::sample(const AxisPositions<Dim>& positions, Scalar* va
     }
   }
   return !aborted;
+}
+
+}
+
+template <int Dim>
+ImplicitSpline<Dim>::ImplicitSpline(
+  const Lattice<Dim>& lattice, Vector coefficients, FarField farField)
+  : ControlLattice(lattice)
+  , Coefficients(std::move(coefficients))
+  , Far(std::move(farField))
+{
+}
+
+template <int Dim>
+ImplicitSpline<Dim>::ImplicitSpline(
+  const Lattice<Dim>& lattice, Vector coefficients, Vector weights, FarField farField)
+  : ControlLattice(lattice)
+  , Coefficients(std::move(coefficients))
+  , Weights(std::move(weights))
+  , Numerator(this->Coefficients.cwiseProduct(this->Weights))
+  , Far(std::move(farField))
+{
+}
+
+template <int Dim>
+double ImplicitSpline<Dim>::value(const Point<Dim>& position) const
+{
+  return evaluateAt<Dim>(this->ControlLattice,
+    coefficientsOf(this->Coefficients, this->Numerator, this->Weights), this->Far, position,
+    nullptr);
+}
+
+template <int Dim>
+Point<Dim> ImplicitSpline<Dim>::gradient(const Point<Dim>& position) const
+{
+  Point<Dim> g;
+  this->valueAndGradient(position, g);
+  return g;
+}
+
+template <int Dim>
+double ImplicitSpline<Dim>::valueAndGradient(const Point<Dim>& position, Point<Dim>& gradient) const
+{
+  return evaluateAt<Dim>(this->ControlLattice,
+    coefficientsOf(this->Coefficients, this->Numerator, this->Weights), this->Far, position,
+    &gradient);
+}
+
+template <int Dim>
+void ImplicitSpline<Dim>::valuesAndGradients(
+  const Points<Dim>& positions, Vector& values, Points<Dim>& gradients) const
+{
+  values.resize(positions.cols());
+  gradients.resize(Dim, positions.cols());
+  dispatch<PointsKernel<Dim>>(this->ControlLattice,
+    coefficientsOf(this->Coefficients, this->Numerator, this->Weights), this->Far, positions,
+    values, gradients);
+}
+
+template <int Dim>
+template <typename Scalar>
+bool ImplicitSpline<Dim>::sampleRational(const AxisPositions<Dim>& positions, Scalar* values,
+  int threads, int derivativeAxis, const ProgressCallback& progress) const
+{
+  const std::vector<double>& last = positions[Dim - 1];
+  std::size_t slice = 1;
+  for (std::size_t a = 0; a + 1 < Dim; ++a)
+  {
+    slice *= positions[a].size();
+  }
+  const std::size_t room = slice * std::min(SlabSize<Dim>, last.size());
+  std::vector<double> numerator(room), denominator(room), slopes, weightSlopes;
+  if (derivativeAxis >= 0)
+  {
+    slopes.resize(room);
+    weightSlopes.resize(room);
+  }
+  AxisPositions<Dim> slab = positions;
+  for (std::size_t begin = 0; begin < last.size(); begin += SlabSize<Dim>)
+  {
+    const std::size_t end = std::min(begin + SlabSize<Dim>, last.size());
+    slab[Dim - 1].assign(last.begin() + static_cast<std::ptrdiff_t>(begin),
+      last.begin() + static_cast<std::ptrdiff_t>(end));
+    const auto fill = [&](const Vector& coefficients, std::array<double, 2> constants, int axis,
+                        std::vector<double>& to)
+    {
+      if (!to.empty())
+      {
+        sampleSpline<Dim>(this->ControlLattice, coefficients, this->Far, constants, slab, to.data(),
+          threads, axis, {});
+      }
+    };
+    // In the far field the quotient is its constant, and the slopes are 0.
+    fill(this->Numerator, { -this->Far.Magnitude, this->Far.Magnitude }, -1, numerator);
+    fill(this->Weights, { 1, 1 }, -1, denominator);
+    fill(this->Numerator, { 0, 0 }, derivativeAxis, slopes);
+    fill(this->Weights, { 0, 0 }, derivativeAxis, weightSlopes);
+    Scalar* const out = values + begin * slice;
+    parallelChunks(static_cast<std::int64_t>((end - begin) * slice), resolveThreads(threads),
+      [&](std::int64_t from, std::int64_t to)
+      {
+        for (auto i = static_cast<std::size_t>(from); i < static_cast<std::size_t>(to); ++i)
+        {
+          const double f = numerator[i] / denominator[i];
+          out[i] = static_cast<Scalar>(
+            slopes.empty() ? f : (slopes[i] - f * weightSlopes[i]) / denominator[i]);
+        }
+      });
+    if (progress && !progress(static_cast<double>(end) / static_cast<double>(last.size())))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <int Dim>
+template <typename Scalar>
+bool ImplicitSpline<Dim>::sample(const AxisPositions<Dim>& positions, Scalar* values, int threads,
+  int derivativeAxis, const ProgressCallback& progress) const
+{
+  if (this->isRational())
+  {
+    return this->sampleRational(positions, values, threads, derivativeAxis, progress);
+  }
+  const double constant = derivativeAxis >= 0 ? 0.0 : this->Far.Magnitude;
+  return sampleSpline<Dim>(this->ControlLattice, this->Coefficients, this->Far,
+    { -constant, constant }, positions, values, threads, derivativeAxis, progress);
 }
 
 template class ImplicitSpline<2>;

@@ -18,9 +18,10 @@ template <int Dim>
 using AxisPositions = std::array<std::vector<double>, Dim>;
 
 /**
- * f(x) = sum_i c_i B_i(x) on the domain, the constant of the far field in its cells, and beyond the
- * domain a continuation that keeps the sign: f at the nearest point of the domain, moved away from
- * 0 by the distance to it.
+ * f(x) = sum_i c_i B_i(x) on the domain, or with weights the uniform rational spline
+ * f(x) = sum_i c_i w_i B_i(x) / sum_i w_i B_i(x); the constant of the far field in its cells, and
+ * beyond the domain a continuation that keeps the sign: f at the nearest point of the domain, moved
+ * away from 0 by the distance to it.
  */
 template <int Dim>
 class ImplicitSpline
@@ -31,9 +32,17 @@ public:
 
   ImplicitSpline(const Lattice<Dim>& lattice, Vector coefficients, FarField farField = {});
 
+  /// The rational spline. @param weights  w, >= 0, with positive denominators everywhere
+  ImplicitSpline(
+    const Lattice<Dim>& lattice, Vector coefficients, Vector weights, FarField farField = {});
+
   const Lattice<Dim>& lattice() const { return this->ControlLattice; }
   const Vector& coefficients() const { return this->Coefficients; }
   const FarField& farField() const { return this->Far; }
+
+  bool isRational() const { return this->Weights.size() > 0; }
+  /// Empty if the spline is not rational.
+  const Vector& weights() const { return this->Weights; }
 
   double value(const Point<Dim>& position) const;
 
@@ -51,7 +60,8 @@ public:
    * f on a grid inside the domain, x fastest.
    *
    * The tensor-product sum is taken one axis at a time, so that a sample costs about seven
-   * multiply-adds; the result equals value() up to rounding.
+   * multiply-adds; the result equals value() up to rounding. A rational spline samples numerator
+   * and denominator, and for a derivative theirs too, and takes as many times as long.
    *
    * @param values          room for the product of the numbers of positions
    * @param derivativeAxis  -1: f; else the partial derivative along that axis
@@ -62,8 +72,14 @@ public:
     int derivativeAxis = -1, const ProgressCallback& progress = {}) const;
 
 private:
+  template <typename Scalar>
+  bool sampleRational(const AxisPositions<Dim>& positions, Scalar* values, int threads,
+    int derivativeAxis, const ProgressCallback& progress) const;
+
   Lattice<Dim> ControlLattice;
   Vector Coefficients;
+  Vector Weights;   // of the rational spline; empty without
+  Vector Numerator; // c_i w_i; empty without
   FarField Far;
 };
 }

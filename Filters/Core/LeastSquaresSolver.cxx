@@ -2,6 +2,7 @@
 #include "LeastSquaresSolver.h"
 
 #include "Parallel.h"
+#include "SolverControl.h"
 
 #include <cmath>
 #include <limits>
@@ -10,141 +11,43 @@ namespace ipia
 {
 namespace
 {
-/// Vector operations in fixed chunks, so that they give the same bits on any number of threads.
-class ChunkedVectors
-{
-public:
-  explicit ChunkedVectors(int threads)
-    : Threads(threads)
-  {
-  }
-
-  double dot(const Vector& a, const Vector& b) const
-  {
-    return parallelSum(a.size(), this->Threads,
-      [&](std::int64_t begin, std::int64_t end)
-      { return a.segment(begin, end - begin).dot(b.segment(begin, end - begin)); });
-  }
-
-  /// y += a x
-  void add(double a, const Vector& x, Vector& y) const
-  {
-    parallelChunks(y.size(), this->Threads,
-      [&](std::int64_t begin, std::int64_t end)
-      { y.segment(begin, end - begin) += a * x.segment(begin, end - begin); });
-  }
-
-  /// y = x + a y
-  void scaleAndAdd(double a, const Vector& x, Vector& y) const
-  {
-    parallelChunks(y.size(), this->Threads,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        y.segment(begin, end - begin) =
-          x.segment(begin, end - begin) + a * y.segment(begin, end - begin);
-      });
-  }
-
-private:
-  int Threads;
-};
-
-/// What both solvers ask before each iteration.
-class IterationControl
-{
-public:
-  IterationControl(
-    const SolverOptions& options, const ProgressCallback& progress, SolverResult& result)
-    : Options(options)
-    , Progress(progress)
-    , Result(result)
-  {
-  }
-
-  /// Appends to the history; called once for each state of the coefficients.
-  double record(double gradientNorm)
-  {
-    if (this->Result.NumberOfIterations == 0)
-    {
-      this->FirstNorm = gradientNorm;
-    }
-    const double relative = this->FirstNorm > 0 ? gradientNorm / this->FirstNorm : 0.0;
-    this->Result.ResidualHistory.push_back(relative);
-    return relative;
-  }
-
-  /// Records the state of the current coefficients; true to iterate on.
-  bool proceed(double gradientNorm, double energyChange)
-  {
-    const double relative = this->record(gradientNorm);
-    const double measure =
-      this->Options.Rule == StoppingRule::RelativeResidual ? relative : energyChange;
-    if (gradientNorm == 0 || measure < this->Options.Tolerance ||
-      this->Result.NumberOfIterations >= this->Options.MaximumNumberOfIterations)
-    {
-      return false;
-    }
-    if (this->Progress &&
-      !this->Progress(
-        double(this->Result.NumberOfIterations) / this->Options.MaximumNumberOfIterations))
-    {
-      this->Result.Status = SolverStatus::Aborted;
-      return false;
-    }
-    ++this->Result.NumberOfIterations;
-    return true;
-  }
-
-private:
-  const SolverOptions& Options;
-  const ProgressCallback& Progress;
-  SolverResult& Result;
-  double FirstNorm = 0;
-};
-
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-
-/// Rounding of a value f(x), a sum of up to 64 products, in units of the largest coefficient.
-constexpr double RoundingOfValues = 64 * std::numeric_limits<double>::epsilon();
-
-/**
- * Whether the energy rose by more than rounding, which a converging step never does. Near 0, where
- * all rows are met, the energy is rounding alone and goes up and down.
- *
- * @param weightSum  sum_k w_k
- */
-bool energyRose(double before, double after, double weightSum, const Vector& coefficients)
-{
-  if (after <= before)
-  {
-    return false;
-  }
-  // By the triangle inequality for sqrt(E), the weighted norm of the residuals.
-  const double rounding =
-    std::sqrt(weightSum) * RoundingOfValues * coefficients.cwiseAbs().maxCoeff();
-  return !(std::sqrt(after) <= std::sqrt(before) * (1 + 1e-6) + rounding);
-}
-
 template <int Dim>
 void progressiveIteration(const CollocationOperator<Dim>& collocation, const SolverOptions& options,
   Vector& c, IterationControl& control, SolverResult& result)
 {
   const ChunkedVectors vectors(collocation.threads());
+  OscillationTerm<Dim> oscillation(
+    collocation.lattice(), options.Oscillation, collocation.threads());
   Vector gradient;
   collocation.columnSums(gradient);
   const double largest = gradient.size() ? gradient.maxCoeff() : 0.0;
-  const double weightSum = gradient.sum(); // the basis is a partition of unity
-  result.StepSize = options.StepSize > 0 ? options.StepSize : largest > 0 ? 2 / largest : 0.0;
+  result.StepSize = oscillation.chooseStepSize(largest, options.StepSize);
+  const double weightSum = gradient.sum() // the basis is a partition of unity
+    + oscillation.sumOfWeights();
 
+  // Of the rows, and what the steps descend.
+  double energy = 0, descended = 0;
+  const auto evaluate = [&]
+  {
+    energy = collocation.residual(c, gradient);
+    oscillation.update(c);
+    if (oscillation.isActive())
+    {
+      vectors.add(-oscillation.kappa(), oscillation.laplacian(), gradient);
+    }
+    result.Energy = energy + oscillation.energy();
+    descended = energy + oscillation.descendedEnergy();
+  };
   double before = Infinity;
-  result.Energy = collocation.residual(c, gradient);
+  evaluate();
   while (
     control.proceed(std::sqrt(vectors.dot(gradient, gradient)), std::abs(before - result.Energy)))
   {
     vectors.add(result.StepSize, gradient, c);
     before = result.Energy;
-    result.Energy = collocation.residual(c, gradient);
-    if (energyRose(before, result.Energy, weightSum, c))
+    const double descendedBefore = descended;
+    evaluate();
+    if (energyRose(descendedBefore, descended, weightSum, c))
     {
       control.record(std::sqrt(vectors.dot(gradient, gradient)));
       result.Status = SolverStatus::Diverged;
@@ -157,12 +60,25 @@ void progressiveIteration(const CollocationOperator<Dim>& collocation, const Sol
 constexpr double RoundingOfResidual = 32 * std::numeric_limits<double>::epsilon();
 
 template <int Dim>
-void conjugateGradient(const CollocationOperator<Dim>& collocation, Vector& c,
-  IterationControl& control, SolverResult& result)
+void conjugateGradient(const CollocationOperator<Dim>& collocation, const SolverOptions& options,
+  Vector& c, IterationControl& control, SolverResult& result)
 {
   const ChunkedVectors vectors(collocation.threads());
+  OscillationTerm<Dim> oscillation(
+    collocation.lattice(), options.Oscillation, collocation.threads());
+  // Subtracts sign kappa L x; returns lambda R(x).
+  const auto addOscillation = [&](const Vector& x, double sign, Vector& to)
+  {
+    oscillation.update(x);
+    if (oscillation.isActive())
+    {
+      vectors.add(-sign * oscillation.kappa(), oscillation.laplacian(), to);
+    }
+    return oscillation.energy();
+  };
   Vector residual, product;
   result.Energy = collocation.residual(c, residual);
+  result.Energy += addOscillation(c, 1, residual);
   Vector direction = residual;
   double squaredNorm = vectors.dot(residual, residual);
   double largestSquaredNorm = squaredNorm;
@@ -178,6 +94,7 @@ void conjugateGradient(const CollocationOperator<Dim>& collocation, Vector& c,
     if (!exhausted)
     {
       collocation.normalProduct(direction, product);
+      addOscillation(direction, -1, product);
       curvature = vectors.dot(direction, product);
     }
     if (!(curvature > 0))
@@ -196,6 +113,7 @@ void conjugateGradient(const CollocationOperator<Dim>& collocation, Vector& c,
   if (result.NumberOfIterations > 0)
   {
     result.Energy = collocation.residual(c, residual);
+    result.Energy += addOscillation(c, 1, residual);
   }
 }
 }
@@ -212,7 +130,7 @@ SolverResult solveLeastSquares(const CollocationOperator<Dim>& collocation,
   }
   else
   {
-    conjugateGradient(collocation, coefficients, control, result);
+    conjugateGradient(collocation, options, coefficients, control, result);
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include "CollocationOperator.h"
 #include "Dispatch.h"
 #include "ImplicitSpline.h"
+#include "RationalSolver.h"
 
 #include <benchmark/benchmark.h>
 
@@ -189,7 +190,7 @@ void forSphereBand(int rowsPerCell, const Action& action)
   }
 }
 
-/// Rows with values alone, in random order.
+/// Rows with the distance from the sphere as value, in random order.
 ConstraintRows<3> sphereBand(int rowsPerCell)
 {
   std::vector<Point<3>> points;
@@ -201,7 +202,10 @@ ConstraintRows<3> sphereBand(int rowsPerCell)
   {
     positions.col(static_cast<Eigen::Index>(k)) = points[k];
   }
-  return { cubeLattice(), positions, Vector::Ones(positions.cols()), Vector() };
+  const double middle = cubeLattice().extent(0) / 2;
+  const Vector distances =
+    (positions.array() - middle).matrix().colwise().norm().transpose().array() - 0.8 * middle;
+  return { cubeLattice(), positions, distances, Vector() };
 }
 
 /// Rows with values and gradients on the band of one level, sorted as they have to be.
@@ -288,6 +292,39 @@ void sweep(benchmark::State& state)
     state.range(0) >= 50 ? "bounds: 25 ns/row, speed-up 1.7" : "bounds: 40 ns/row, speed-up 1.7");
 }
 BENCHMARK(sweep)->Arg(5)->Arg(50)->UseManualTime()->Unit(benchmark::kMillisecond)->MinTime(2);
+
+/// An iteration of solveRational against one of solveLeastSquares on the same rows, one thread, in
+/// turn; what goes before the first iteration is in both.
+void rationalIteration(benchmark::State& state)
+{
+  const ConstraintRows<3> rows = sphereBand(static_cast<int>(state.range(0)));
+  const CollocationOperator<3> collocation(rows, 1);
+  SolverOptions options;
+  options.MaximumNumberOfIterations = state.range(0) >= 50 ? 10 : 50;
+  RationalOptions rational;
+  rational.WeightStepSize = 1e-3;
+  std::vector<double> splines, rationals, ratios;
+  for (auto unused : state)
+  {
+    Vector c = Vector::Zero(rows.lattice().numberOfCoefficients()), d = c;
+    splines.push_back(seconds([&] { solveLeastSquares(collocation, options, c); }));
+    rationals.push_back(seconds([&] { solveRational(rows, options, rational, 1, d); }));
+    ratios.push_back(rationals.back() / splines.back());
+    state.SetIterationTime(rationals.back());
+  }
+  const double scale = 1e9 / static_cast<double>(rows.size()) / options.MaximumNumberOfIterations;
+  state.counters["rows"] = static_cast<double>(rows.size());
+  state.counters["ns/row, B-spline"] = scale * median(splines);
+  state.counters["ns/row, rational"] = scale * median(rationals);
+  state.counters["times B-spline"] = median(ratios);
+  state.SetLabel("bound at 50 rows a cell: 2.5 times B-spline");
+}
+BENCHMARK(rationalIteration)
+  ->Arg(5)
+  ->Arg(50)
+  ->UseManualTime()
+  ->Unit(benchmark::kMillisecond)
+  ->MinTime(2);
 
 /// BrickOperator::product, a row's value and gradient together, without fairing; once with one
 /// thread and once with two in turn.

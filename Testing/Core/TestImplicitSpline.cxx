@@ -398,4 +398,107 @@ TYPED_TEST(ImplicitSplineTest, TheGradientPointsAwayFromAFarFieldAtTheBorder)
   EXPECT_EQ(spline.value(outside), -5);
   EXPECT_LE((spline.gradient(outside) - Point<Dim>::Unit(0)).norm(), 1e-15);
 }
+
+/// A rational spline with weights from 0 to 3.
+template <int Dim>
+ImplicitSpline<Dim> rationalSpline(FarField farField = {})
+{
+  const Lattice<Dim> lattice = ipia::test::anisotropicLattice<Dim>();
+  ipia::test::Random random(91);
+  const Vector c = random.vector(lattice.numberOfCoefficients(), -1, 1);
+  Vector w = random.vector(lattice.numberOfCoefficients(), 0.2, 3);
+  w[w.size() / 2] = 0;
+  return { lattice, c, w, std::move(farField) };
+}
+
+TYPED_TEST(ImplicitSplineTest, RationalValuesAndGradientsAreThoseOfTheQuotient)
+{
+  constexpr int Dim = TypeParam::value;
+  const auto spline = rationalSpline<Dim>();
+  EXPECT_TRUE(spline.isRational());
+  const Points<Dim> x = ipia::test::Random(92).pointsIn(spline.lattice(), 200);
+  const Eigen::MatrixXd b = ipia::test::collocationMatrix(spline.lattice(), x);
+  const Vector expected =
+    (b * spline.weights().cwiseProduct(spline.coefficients())).cwiseQuotient(b * spline.weights());
+  Vector values;
+  Points<Dim> gradients;
+  spline.valuesAndGradients(x, values, gradients);
+  EXPECT_LE((values - expected).cwiseAbs().maxCoeff(), 1e-13);
+  const double step = 1e-6;
+  for (Eigen::Index k = 0; k < x.cols(); ++k)
+  {
+    EXPECT_NEAR(spline.value(x.col(k)), expected[k], 1e-13);
+    const Point<Dim> g = spline.gradient(x.col(k));
+    EXPECT_LE((g - gradients.col(k)).norm(), 1e-12);
+    for (int a = 0; a < Dim; ++a)
+    {
+      const Point<Dim> e = step * Point<Dim>::Unit(a);
+      const double difference =
+        (spline.value(x.col(k) + e) - spline.value(x.col(k) - e)) / (2 * step);
+      // Beyond the domain f goes on differently.
+      if (spline.lattice().contains(x.col(k) + e) && spline.lattice().contains(x.col(k) - e))
+      {
+        EXPECT_NEAR(g[a], difference, 1e-6);
+      }
+    }
+  }
+}
+
+TYPED_TEST(ImplicitSplineTest, RationalSamplesAreValuesWithAndWithoutAFarField)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = ipia::test::anisotropicLattice<Dim>();
+  FarField far;
+  far.Magnitude = 0.7;
+  far.Sign.resize(static_cast<std::size_t>(lattice.numberOfBoxes()));
+  for (std::size_t i = 0; i < far.Sign.size(); ++i)
+  {
+    far.Sign[i] = static_cast<std::int8_t>(i % 5 == 0 ? -1 : i % 3 == 0 ? 1 : 0);
+  }
+  for (const FarField& field : { FarField{}, far })
+  {
+    const auto spline = rationalSpline<Dim>(field);
+    AxisPositions<Dim> positions;
+    std::int64_t total = 1;
+    for (int a = 0; a < Dim; ++a)
+    {
+      for (int k = 0; k < 37; ++k)
+      {
+        positions[a].push_back(lattice.extent(a) * (k + 0.3) / 37);
+      }
+      total *= 37;
+    }
+    for (int axis = -1; axis < Dim; ++axis)
+    {
+      Vector one(total), two(total);
+      EXPECT_TRUE(spline.sample(positions, one.data(), 1, axis));
+      EXPECT_TRUE(spline.sample(positions, two.data(), 3, axis));
+      EXPECT_TRUE(ipia::test::sameBits(one, two));
+      for (std::int64_t i = 0; i < total; i += 7)
+      {
+        Point<Dim> x;
+        std::int64_t rest = i;
+        for (int a = 0; a < Dim; ++a, rest /= 37)
+        {
+          x[a] = positions[a][static_cast<std::size_t>(rest % 37)];
+        }
+        EXPECT_NEAR(one[i], axis < 0 ? spline.value(x) : spline.gradient(x)[axis], 1e-11);
+      }
+    }
+  }
+}
+
+TYPED_TEST(ImplicitSplineTest, EqualWeightsMakeNoDifference)
+{
+  constexpr int Dim = TypeParam::value;
+  const auto rational = rationalSpline<Dim>();
+  const ImplicitSpline<Dim> equal(rational.lattice(), rational.coefficients(),
+    Vector::Constant(rational.coefficients().size(), 0.3)),
+    polynomial(rational.lattice(), rational.coefficients());
+  const Points<Dim> x = ipia::test::Random(93).pointsIn(rational.lattice(), 50);
+  for (Eigen::Index k = 0; k < x.cols(); ++k)
+  {
+    EXPECT_NEAR(equal.value(1.5 * x.col(k)), polynomial.value(1.5 * x.col(k)), 1e-13);
+  }
+}
 }

@@ -75,6 +75,40 @@ class TestImplicitFitterInPython(Testing.vtkTest):
         self.assertIsInstance(reconstruction.GetFitter(), vtkIPIAImplicitFitter)
         self.assertGreater(reconstruction.GetFitter().GetNumberOfLevelsUsed(), 0)
 
+    def test_rational_spline(self):
+        fitter = classic_fitter(cloud(sphere(), sphere()))
+        fitter.SetSolverToProgressiveIteration()
+        fitter.SetBasisType(vtkIPIAImplicitFitter.UniformRational)
+        fitter.SetWeightStepSize(5)
+        fitter.SetOscillationWeight(1e-3)
+        fitter.SetOscillationStep(vtkIPIAImplicitFitter.AsPrinted)
+        fitter.Update()
+        lattice = dsa.WrapDataObject(fitter.GetOutputDataObject(2))
+        weights, coefficients = lattice.PointData["Weight"], lattice.PointData["Coefficient"]
+        self.assertEqual(weights.shape, coefficients.shape)
+        self.assertGreaterEqual(weights.min(), 0)
+        self.assertGreater(np.ptp(weights), 1e-3)
+        self.assertLessEqual(fitter.GetWeightStepSizeUsed(), 5)
+        # The function is the quotient: with all weights doubled it is the same.
+        doubled = lattice.VTKObject.NewInstance()
+        doubled.DeepCopy(lattice.VTKObject)
+        vtk_to_numpy(doubled.GetPointData().GetArray("Weight"))[:] *= 2
+        function = vtkIPIAImplicitFunction()
+        function.SetControlLattice(doubled)
+        for x in sphere(20) * 1.02:
+            self.assertAlmostEqual(function.EvaluateFunction(x),
+                                   fitter.GetImplicitFunction().EvaluateFunction(x), places=12)
+
+    def test_oscillation_weight_is_refused_with_levels(self):
+        messages = []
+        fitter = vtkIPIAImplicitFitter()
+        fitter.AddObserver("ErrorEvent", lambda caller, event: messages.append(event))
+        fitter.SetInputData(cloud(sphere(), sphere()))
+        fitter.SetOscillationWeight(0.1)
+        fitter.Update()
+        self.assertEqual(messages, ["ErrorEvent"])
+        self.assertEqual(fitter.GetOutput().GetNumberOfPoints(), 0)
+
     def test_image_as_array(self):
         fitter = classic_fitter(cloud(sphere(), sphere()))
         fitter.SetSampleDimensions(20, 30, 40)
