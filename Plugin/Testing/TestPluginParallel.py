@@ -24,28 +24,51 @@ def measured(proxy):
     return {"points": proxy.GetDataInformation().GetNumberOfPoints(), "area": area}
 
 
+PIECES = """<VTKFile type="PPolyData" version="0.1" byte_order="LittleEndian">
+  <PPolyData GhostLevel="0">
+    <PPointData Normals="Normals">
+      <PDataArray type="Float64" Name="Normals" NumberOfComponents="3"/>
+    </PPointData>
+    <PPoints>
+      <PDataArray type="Float64" Name="Points" NumberOfComponents="3"/>
+    </PPoints>
+    <Piece Source="parallel_0.vtp"/>
+    <Piece Source="parallel_1.vtp"/>
+  </PPolyData>
+</VTKFile>
+"""
+
+
+def write_pieces(path):
+    points, normals = t.kitten()
+    for piece in range(2):
+        half = slice(piece * 2605, (piece + 1) * 2605)
+        t.write(f"parallel_{piece}.vtp", t.polydata(points[half], normals[half]))
+    with open(path, "w", encoding="ascii") as file:
+        file.write(PIECES)
+
+
 def main(expected_ranks):
     assert ranks == expected_ranks, ranks
-    # Its points are spread over the ranks.
-    path = t.output("parallel.vtp")
-    if expected_ranks == 1:
-        t.write("parallel.vtp", t.polydata(*t.kitten()))
-    cloud = simple.XMLPolyDataReader(FileName=[path])
-    spread = simple.ExtractSurface(Input=simple.RedistributeDataSet(Input=cloud))
-    spread.UpdatePipeline()
-    own = spread.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints()
-    assert 0 < own < 5210 or ranks == 1, "the points are not spread"
+    # A file of two pieces: each rank reads its own.
+    path = t.output("parallel.pvtp")
+    if ranks == 1:
+        write_pieces(path)
+    cloud = simple.XMLPartitionedPolydataReader(FileName=[path])
+    cloud.UpdatePipeline()
+    own = cloud.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints()
+    assert own == 5210 // ranks, own
 
     results = {}
     with t.Messages() as messages:
-        surface = simple.IPIASurfaceReconstruction(Input=spread)
+        surface = simple.IPIASurfaceReconstruction(Input=cloud)
         surface.UpdatePipeline()
         results["surface"] = measured(surface)
-        fitter = simple.IPIAImplicitFitter(Input=spread)
+        fitter = simple.IPIAImplicitFitter(Input=cloud)
         contour = simple.Contour(Input=fitter, ContourBy=["POINTS", "f"], Isosurfaces=[0.0])
         contour.UpdatePipeline()
         results["contour"] = measured(contour)
-        oriented = simple.IPIAOrientedPointCloud(Input=spread)
+        oriented = simple.IPIAOrientedPointCloud(Input=cloud)
         results["oriented"] = {"points": 0}
         oriented.UpdatePipeline()
         results["oriented"]["points"] = oriented.GetDataInformation().GetNumberOfPoints()

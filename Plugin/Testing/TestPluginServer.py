@@ -11,7 +11,7 @@ from paraview import servermanager, simple
 import plugin_testing as t
 
 port, ranks = int(sys.argv[1]), int(sys.argv[2])
-simple.Connect("localhost", port)
+simple.Connect("127.0.0.1", port)  # "localhost" may have no entry in /etc/hosts
 assert servermanager.ActiveConnection.IsRemote()
 assert servermanager.ActiveConnection.GetNumberOfDataPartitions() == ranks
 
@@ -24,8 +24,7 @@ loaded = [
 ]
 assert "IPIA" in loaded, loaded
 
-reader = simple.XMLPolyDataReader(FileName=[t.output("parallel.vtp")])
-cloud = simple.ExtractSurface(Input=simple.RedistributeDataSet(Input=reader))
+cloud = simple.XMLPartitionedPolydataReader(FileName=[t.output("parallel.pvtp")])
 cloud.UpdatePipeline()
 surface = simple.IPIASurfaceReconstruction(registrationName="Surface", Input=cloud)
 fitter = simple.IPIAImplicitFitter(Input=cloud)

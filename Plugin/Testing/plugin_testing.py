@@ -61,6 +61,8 @@ def write(name, data):
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(output(name))
     writer.SetInputData(data)
+    # Not appended, the default, which Debian's ParaView 5.11.0 cannot read with libexpat1 2.5.0-1+deb12u2.
+    writer.SetDataModeToBinary()
     assert writer.Write()
     return output(name)
 
