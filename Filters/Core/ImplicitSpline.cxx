@@ -429,7 +429,8 @@ struct SampleKernel
         for (std::size_t r = grid.RunBegin[row]; r < grid.RunBegin[row + 1]; ++r)
         {
           const auto& part = grid.Runs[r];
-          if (part.Sign == 0)
+          // An empty run at the end of a row would load past its padding.
+          if (part.Sign == 0 && part.Begin < part.End)
           {
             std::array<const double*, Grid::Slices> in;
             for (std::size_t k = 0; k < Grid::Slices; ++k)
