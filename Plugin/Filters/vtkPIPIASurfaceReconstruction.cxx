@@ -98,6 +98,26 @@ void vtkPIPIASurfaceReconstruction::SetInwardOffsetValue(double value)
   this->GetFitter()->SetInwardOffsetValue(value);
 }
 
+void vtkPIPIASurfaceReconstruction::SetBasisType(int value)
+{
+  this->GetFitter()->SetBasisType(value);
+}
+
+void vtkPIPIASurfaceReconstruction::SetWeightStepSize(double value)
+{
+  this->GetFitter()->SetWeightStepSize(value);
+}
+
+void vtkPIPIASurfaceReconstruction::SetOscillationWeight(double value)
+{
+  this->GetFitter()->SetOscillationWeight(value);
+}
+
+void vtkPIPIASurfaceReconstruction::SetOscillationStep(int value)
+{
+  this->GetFitter()->SetOscillationStep(value);
+}
+
 void vtkPIPIASurfaceReconstruction::SetFairingWeight(double value)
 {
   this->GetFitter()->SetFairingWeight(value);

@@ -64,6 +64,10 @@ public:
   void SetOffsetValue(double value);
   void SetInwardOffsetDistance(double value);
   void SetInwardOffsetValue(double value);
+  void SetBasisType(int value);
+  void SetWeightStepSize(double value);
+  void SetOscillationWeight(double value);
+  void SetOscillationStep(int value);
   void SetFairingWeight(double value);
   void SetFairingOrder(int value);
   void SetSolver(int value);
