@@ -40,6 +40,11 @@ std::string readPointArray(vtkPointData* data, const char* name, std::int64_t si
   for (std::int64_t i = 0; i < size; ++i)
   {
     values[i] = array->GetComponent(i, 0);
+    if (!std::isfinite(values[i]))
+    {
+      return std::string("value ") + std::to_string(i) + " of the point array " + name +
+        " of the control lattice is not finite";
+    }
   }
   return {};
 }
@@ -55,13 +60,13 @@ std::string readWeights(vtkPointData* data, const Lattice<Dim>& lattice, Vector&
   std::string wrong =
     readPointArray(data, WeightArrayName, lattice.numberOfCoefficients(), weights);
   if (wrong.empty() &&
-    !std::all_of(
-      weights.begin(), weights.end(), [](double w) { return w >= 0 && std::isfinite(w); }))
+    !std::all_of(weights.begin(), weights.end(), [](double w) { return w >= 0; }))
   {
     wrong = std::string("the point array ") + WeightArrayName +
-      " of the control lattice has values that are negative or not finite";
+      " of the control lattice has negative values";
   }
-  if (wrong.empty() && !hasPositiveDenominators(lattice, weights))
+  // A factor of all weights changes nothing.
+  if (wrong.empty() && !hasPositiveDenominators<Dim>(lattice, weights / weights.maxCoeff()))
   {
     wrong = std::string("the point array ") + WeightArrayName +
       " of the control lattice is 0 all around a knot, where f would be 0 / 0";
@@ -178,9 +183,13 @@ std::string fromControlLattice(
       return "the control lattice has " + std::to_string(dimensions[axis]) +
         " coefficients on an axis; at least 4 are needed";
     }
-    if (!(lattice.Spacing[a] > 0))
+    if (!(lattice.Spacing[a] > 0 && std::isfinite(lattice.Spacing[a])))
     {
-      return "the spacing of the control lattice is not positive";
+      return "the spacing of the control lattice is not positive and finite";
+    }
+    if (!std::isfinite(placement.Origin[axis]))
+    {
+      return "the origin of the control lattice is not finite";
     }
     placement.Origin[axis] += lattice.Spacing[a] * (1 + image->GetExtent()[2 * axis]);
   }

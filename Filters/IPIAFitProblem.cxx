@@ -63,6 +63,7 @@ void FitProblem::Prepare(const FitParameters& parameters)
       action();
     }
   };
+  step([&] { this->CheckNumbers(parameters); });
   step([&] { this->CheckBasisAndOscillation(parameters); });
   step([&] { this->CheckCombination(parameters); });
   step([&] { this->ChooseDimension(parameters); });
@@ -96,19 +97,33 @@ bool FitProblem::staysInBricks(const FitParameters& parameters) const
     std::all_of(samples.begin(), samples.end(), [](int n) { return n == 0; });
 }
 
+void FitProblem::CheckNumbers(const FitParameters& parameters)
+{
+  const std::pair<const char*, double> numbers[] = {
+    { "OffsetDistance", parameters.OffsetDistance },
+    { "OffsetValue", parameters.OffsetValue },
+    { "InwardOffsetDistance", parameters.InwardOffsetDistance },
+    { "InwardOffsetValue", parameters.InwardOffsetValue },
+    { "FairingWeight", parameters.FairingWeight },
+    { "WeightStepSize", parameters.WeightStepSize },
+    { "OscillationWeight", parameters.OscillationWeight },
+    { "Tolerance", parameters.Tolerance },
+    { "StepSize", parameters.StepSize },
+  };
+  for (const auto& [name, value] : numbers)
+  {
+    if (!std::isfinite(value))
+    {
+      this->Refusal = text(name, " is ", value, "; it must be a finite number. Set one.");
+      return;
+    }
+  }
+}
+
 void FitProblem::CheckBasisAndOscillation(const FitParameters& parameters)
 {
   using Fitter = vtkIPIAImplicitFitter;
   const bool rational = parameters.isRational();
-  for (const auto& [name, value] : { std::make_pair("WeightStepSize", parameters.WeightStepSize),
-         std::make_pair("OscillationWeight", parameters.OscillationWeight) })
-  {
-    if (!std::isfinite(value))
-    {
-      this->Refusal = text(name, " is ", value, "; it must be a finite number, 0 or more.");
-      return;
-    }
-  }
   if (!rational && parameters.OscillationWeight == 0)
   {
     return;

@@ -74,6 +74,7 @@ public:
 
 private:
   void CheckCombination(const FitParameters& parameters);
+  void CheckNumbers(const FitParameters& parameters);
   void CheckBasisAndOscillation(const FitParameters& parameters);
   void CheckPrintedStep(const FitParameters& parameters);
   void ChooseDimension(const FitParameters& parameters);

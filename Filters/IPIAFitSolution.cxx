@@ -61,6 +61,11 @@ std::string whyDiverged(const SolverResult& solved, const FitParameters& paramet
       "StepSize, or leave it 0 for 2 / max_i sum_k w_k B_i(x_k)",
       printed ? ", or set OscillationStep to Energy." : ".");
   }
+  if (!printed)
+  {
+    return text("The iteration diverges", rose,
+      "the row weights or values of extra rows, which are too large for double precision.");
+  }
   return text("The iteration diverges with OscillationWeight ", parameters.OscillationWeight,
     " and OscillationStep AsPrinted", rose, "OscillationWeight, or set OscillationStep to Energy.");
 }
@@ -314,6 +319,28 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
       scaledSupport(lattice, toLocal(solution.Place, problem.Cloud.Positions), options.Threads);
   }
 }
+
+/// Number of offset rows in the domain; the others are left out.
+template <int Dim>
+std::int64_t offsetRowsInside(
+  const Lattice<Dim>& lattice, const FitProblem& problem, const OffsetRows& offsets)
+{
+  const auto place = placementOf<Dim>(problem);
+  const Points<Dim> positions = toLocal(place, problem.Cloud.Positions);
+  const Points<Dim> normals = normalsOf(problem, place);
+  std::int64_t count = 0;
+  const auto add = [&](const Vector& distance, double side)
+  {
+    for (Eigen::Index k = 0; k < distance.size(); ++k)
+    {
+      count += distance[k] > 0 && !normals.col(k).isZero(0) &&
+        lattice.contains(positions.col(k) + side * distance[k] * normals.col(k));
+    }
+  };
+  add(offsets.OutwardDistance, 1);
+  add(offsets.InwardDistance, -1);
+  return count;
+}
 }
 
 template <int Dim>
@@ -329,6 +356,13 @@ FitSolution<Dim> solve(
     solution.OffsetDistance = parameters.OffsetDistance > 0 ? parameters.OffsetDistance : automatic;
   }
   const OffsetRows offsets = offsetRowsOf(problem, parameters, automatic);
+  if (parameters.NormalConstraint != vtkIPIAImplicitFitter::Gradient &&
+    offsetRowsInside(lattice, problem, offsets) == 0)
+  {
+    solution.Error = text("No offset row lies in the domain: their distance from the points is ",
+      solution.OffsetDistance, ". Reduce OffsetDistance, or enlarge ModelBounds or Padding.");
+    return solution;
+  }
   if (parameters.isClassic())
   {
     solveClassic(lattice, problem, parameters, offsets, progress, solution);

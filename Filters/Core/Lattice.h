@@ -108,12 +108,13 @@ struct Lattice
   }
 
   /// Knot cells are half open but for the last, which is closed: a position on the upper bound is
-  /// inside. Positions outside are assigned to the nearest cell (T is then beyond its range).
+  /// inside. Positions outside are assigned to the nearest cell (T is then beyond its range), those
+  /// that are no number to the first (T is then none).
   AxisLocation locate(double position, int axis) const
   {
     const double u = position / this->Spacing[axis];
     const double last = static_cast<double>(this->cells(axis) - 1);
-    const double cell = std::min(std::max(std::floor(u + KnotTolerance), 0.0), last);
+    const double cell = std::min(last, std::max(0.0, std::floor(u + KnotTolerance)));
     return { static_cast<std::int64_t>(cell), u - cell };
   }
 
@@ -125,7 +126,7 @@ struct Lattice
     const double u = position / this->Spacing[axis];
     const double last = static_cast<double>(this->boxes(axis) - 1);
     const double box = std::floor(2 * (u + KnotTolerance) + 0.5);
-    return static_cast<std::int64_t>(std::min(std::max(box, 0.0), last));
+    return static_cast<std::int64_t>(std::min(last, std::max(0.0, box)));
   }
 
   /// True within the closed domain; rounding of the upper bound is forgiven.

@@ -43,8 +43,9 @@ def watch(valgrind, pvpython):
     # One thread: OpenMP's others keep their stacks to the end. Python's own allocator hides blocks.
     environment = dict(os.environ, OMP_NUM_THREADS="1", PYTHONMALLOC="malloc")
     done = subprocess.run(
-        [valgrind, "--leak-check=full", "--num-callers=40", f"--log-file={log}", "--error-limit=no",
-         pvpython, os.path.abspath(__file__)], env=environment, check=False)
+        # Libraries that were unloaded keep their names: others may lie at their addresses later.
+        [valgrind, "--leak-check=full", "--keep-debuginfo=yes", "--num-callers=40",
+         f"--log-file={log}", "--error-limit=no", pvpython, os.path.abspath(__file__)], env=environment, check=False)
     assert done.returncode == 0, done.returncode
     with open(log, encoding="utf-8", errors="replace") as file:
         text = re.sub(r"^==\d+== ?", "", file.read(), flags=re.MULTILINE)

@@ -15,6 +15,7 @@
 #include <chrono>
 #include <functional>
 #include <limits>
+#include <utility>
 
 namespace
 {
@@ -366,6 +367,38 @@ void TestDivergence(Checks& checks)
     "diverges with StepSize 1000", [](auto*, auto* fitter) { fitter->SetStepSize(1000); });
 }
 
+/// All offset rows leave the domain, by the classic method and in the hierarchy.
+void TestOffsetsOutside(Checks& checks)
+{
+  CheckRefused(checks, "offsets outside the domain", SphereCloud(),
+    "No offset row lies in the domain",
+    [](auto*, auto* fitter)
+    {
+      fitter->SetNormalConstraintToOutwardOffset();
+      fitter->SetOffsetDistance(5);
+    });
+}
+
+void TestNumbersThatAreNone(Checks& checks)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using Set = void (vtkIPIAImplicitFitter::*)(double);
+  const std::pair<const char*, Set> numbers[] = {
+    { "OffsetDistance is nan", &vtkIPIAImplicitFitter::SetOffsetDistance },
+    { "OffsetValue is nan", &vtkIPIAImplicitFitter::SetOffsetValue },
+    { "InwardOffsetDistance is nan", &vtkIPIAImplicitFitter::SetInwardOffsetDistance },
+    { "InwardOffsetValue is nan", &vtkIPIAImplicitFitter::SetInwardOffsetValue },
+    { "FairingWeight is nan", &vtkIPIAImplicitFitter::SetFairingWeight },
+    { "Tolerance is nan", &vtkIPIAImplicitFitter::SetTolerance },
+    { "StepSize is nan", &vtkIPIAImplicitFitter::SetStepSize },
+  };
+  for (const auto& [phrase, set] : numbers)
+  {
+    CheckRefused(checks, phrase, SphereCloud(), phrase,
+      [&, member = set](auto*, auto* fitter) { (fitter->*member)(nan); });
+  }
+}
+
 void TestBlockWithoutNormals(Checks& checks)
 {
   vtkNew<vtkPolyData> bare;
@@ -414,6 +447,8 @@ int TestImplicitFitterRefusals(int, char*[])
   TestDimension(checks);
   TestExtraRowsWithoutValues(checks);
   TestDivergence(checks);
+  TestOffsetsOutside(checks);
+  TestNumbersThatAreNone(checks);
   TestBlockWithoutNormals(checks);
   TestBlockWithoutWeights(checks);
   return checks.Result();

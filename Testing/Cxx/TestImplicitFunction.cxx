@@ -19,6 +19,9 @@
 #include "vtkXMLImageDataReader.h"
 #include "vtkXMLImageDataWriter.h"
 
+#include <cmath>
+#include <limits>
+
 namespace
 {
 using ipiatest::Checks;
@@ -143,6 +146,24 @@ void TestBadLattices(Checks& checks)
   auto flat = Lattice(8, 8, 8, "Coefficient");
   flat->SetSpacing(1, 0, 1);
   CheckRefusedLattice(checks, flat, "spacing of the control lattice is not positive");
+
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  flat->SetSpacing(1, infinity, 1);
+  CheckRefusedLattice(checks, flat, "spacing of the control lattice is not positive and finite");
+  auto displaced = Lattice(8, 8, 8, "Coefficient");
+  displaced->SetOrigin(0, nan, 0);
+  CheckRefusedLattice(checks, displaced, "origin of the control lattice is not finite");
+  for (const char* name : { "Coefficient", "Weight" })
+  {
+    for (double value : { nan, infinity })
+    {
+      auto lattice = Lattice(8, 8, 8, "Coefficient");
+      lattice->GetPointData()->AddArray(Lattice(8, 8, 8, "Weight")->GetPointData()->GetArray(0));
+      lattice->GetPointData()->GetArray(name)->SetTuple1(7, value);
+      CheckRefusedLattice(checks, lattice, std::string("value 7 of the point array ") + name);
+    }
+  }
 
   constexpr vtkIdType boxes = 11 * 11 * 11;
   CheckRefusedLattice(checks, WithFarField(boxes - 1, 1, 1, 2), "1330 values of 1 component(s)");
@@ -291,6 +312,45 @@ void TestFile(Checks& checks, bool planar, const std::string& folder)
   checks.That(same, file + ": exactly the function of the fitter");
 }
 
+/// No crash, no number.
+void TestNoNumber(Checks& checks)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (bool planar : { false, true })
+  {
+    auto fitter = Fit(planar);
+    for (int a = planar ? 1 : 0; a < 3; ++a) // across the plane f is the same everywhere
+    {
+      double x[3] = { 0, 0, 0 };
+      x[a] = nan;
+      checks.That(std::isnan(fitter->GetImplicitFunction()->EvaluateFunction(x)),
+        ipiatest::Text("f where coordinate ", a, " is no number"));
+    }
+  }
+}
+
+/// A factor of all weights of a rational lattice changes nothing.
+void TestScaledWeights(Checks& checks)
+{
+  vtkNew<vtkIPIAImplicitFunction> function;
+  for (double factor : { 1., 1e-12 })
+  {
+    auto lattice = Lattice(8, 8, 8, "Coefficient");
+    auto weights = Lattice(8, 8, 8, "Weight");
+    vtkDataArray* values = weights->GetPointData()->GetArray(0);
+    for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
+    {
+      values->SetTuple1(i, factor);
+      lattice->GetPointData()->GetArray(0)->SetTuple1(i, static_cast<double>(i % 8));
+    }
+    lattice->GetPointData()->AddArray(values);
+    function->SetControlLattice(lattice);
+    double x[3] = { 2.5, 3, 3 };
+    checks.AtMost(std::abs(function->EvaluateFunction(x) - 2.5), 1e-12,
+      ipiatest::Text("f with all weights ", factor));
+  }
+}
+
 /// Beyond the domain the sign is kept and |f| grows with the distance.
 void TestBeyondDomain(Checks& checks)
 {
@@ -394,6 +454,8 @@ int TestImplicitFunction(int argc, char* argv[])
     TestFile(checks, planar, folder);
   }
   TestInterpolator(checks);
+  TestNoNumber(checks);
+  TestScaledWeights(checks);
   TestBeyondDomain(checks);
   TestSupport(checks);
   TestFilters(checks);
