@@ -373,8 +373,10 @@ void TestFile(Checks& checks, bool planar, const std::string& folder)
     messages->CheckOneError(checks, phrase, what + ", " + phrase);
     checks.That(!function->HasControlLattice(), what + ": not taken");
   };
-  refuse("negative or not finite", [](auto* w) { w->SetComponent(3, 0, -1); });
-  refuse("negative or not finite", [](auto* w) { w->SetComponent(3, 0, std::nan("")); });
+  refuse("Weight of the control lattice has negative values",
+    [](auto* w) { w->SetComponent(3, 0, -1); });
+  refuse("value 3 of the point array Weight of the control lattice is not finite",
+    [](auto* w) { w->SetComponent(3, 0, std::nan("")); });
   refuse("0 all around a knot", [](auto* w) { w->Fill(0); });
   refuse("no point array Weight with one value", [](auto* w) { w->SetNumberOfTuples(5); });
 }
