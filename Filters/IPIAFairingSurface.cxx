@@ -165,6 +165,12 @@ std::string vtkFairingPIASurfaceFilter::Surface::start(int degree)
         gridded ? ipia::text(" on a grid of ", most, " points it can be ", least, " to ", most, ".")
                 : ipia::text(" it must be ", least, " at least."));
     }
+    // Before knots of any number are made.
+    if (!gridded && n > MostControlPointsPerPoint * round.Data.Points.rows())
+    {
+      return ipia::text("NumberOfControlPoints along ", AxisNames[axis], " is ", n, ", more than ",
+        MostControlPointsPerPoint, " times the ", round.Data.Points.rows(), " points. Set fewer.");
+    }
     round.Spline.Axes[axis] = gridded
       ? ipia::averagedKnots(round.Data.Parameters[axis], degree, n, false)
       : ipia::uniformKnots(degree, n, false);
