@@ -336,6 +336,11 @@ std::string checkWeights(const Vector& weights, const std::string& name)
   return {};
 }
 
+std::string nameOf(vtkDataArray* array)
+{
+  return array && array->GetName() ? array->GetName() : "";
+}
+
 std::string checkSamples(double samples, vtkDataSet* data)
 {
   const double needed =

@@ -255,7 +255,7 @@ std::string vtkFairingPIASurfaceFilter::Surface::readEarlierRound()
   }
   round.ControlWeights = weights ? ipia::toVector(weights) : ipia::Vector();
   round.Movable = movable ? ipia::toVector(movable) : ipia::Vector();
-  return ipia::checkWeights(round.ControlWeights, "FairingWeight");
+  return ipia::checkWeights(round.ControlWeights, ipia::nameOf(weights));
 }
 
 std::string vtkFairingPIASurfaceFilter::Surface::read(const ipia::FairingParameters& parameters)
@@ -284,8 +284,7 @@ std::string vtkFairingPIASurfaceFilter::Surface::read(const ipia::FairingParamet
         "...).");
     }
     this->round().DataWeights = ipia::toVector(weights);
-    refusal =
-      ipia::checkWeights(this->round().DataWeights, weights->GetName() ? weights->GetName() : "");
+    refusal = ipia::checkWeights(this->round().DataWeights, ipia::nameOf(weights));
   }
   if (!refusal.empty())
   {
