@@ -95,11 +95,12 @@ private:
 class HiddenArrays
 {
 public:
-  /// An empty name: what the filter takes by itself. Other than the panel's None, which is no
-  /// array.
+  static constexpr const char* NoArray = "None";
+
+  /// nullptr: what the filter takes by itself; an empty name, as the panel's None: no array.
   void Take(vtkAlgorithm* filter, int index, const char* name)
   {
-    const std::string chosen = name ? name : "";
+    const std::string chosen = !name ? "" : *name == 0 ? NoArray : name;
     if (chosen != this->Names[index])
     {
       this->Names[index] = chosen;

@@ -13,11 +13,12 @@
 vtkStandardNewMacro(vtkPFairingPIACurveFilter);
 
 vtkPFairingPIACurveFilter::vtkPFairingPIACurveFilter()
-  : Arrays(new ipia::HiddenArrays)
+  : UseMovablePoints(false)
+  , Arrays(new ipia::HiddenArrays)
 {
   this->Arrays->Hide(this, 1, 1, "FairingWeight");
-  this->Arrays->Hide(this, 2, 1, "None");
-  this->Arrays->Hide(this, 3, 0, "None");
+  this->Arrays->Hide(this, 2, 1, ipia::HiddenArrays::NoArray);
+  this->Arrays->Hide(this, 3, 0, ipia::HiddenArrays::NoArray);
 }
 
 vtkPFairingPIACurveFilter::~vtkPFairingPIACurveFilter() = default;
@@ -40,7 +41,15 @@ void vtkPFairingPIACurveFilter::SetControlPointWeightsArray(const char* name)
 
 void vtkPFairingPIACurveFilter::SetMovablePointsArray(const char* name)
 {
-  this->Arrays->Take(this, 2, name);
+  this->MovablePoints = name ? name : "";
+  this->Arrays->Take(
+    this, 2, this->UseMovablePoints ? this->MovablePoints.c_str() : ipia::HiddenArrays::NoArray);
+}
+
+void vtkPFairingPIACurveFilter::SetUseMovablePoints(bool use)
+{
+  this->UseMovablePoints = use;
+  this->SetMovablePointsArray(std::string(this->MovablePoints).c_str());
 }
 
 void vtkPFairingPIACurveFilter::SetParametersArray(const char* name)

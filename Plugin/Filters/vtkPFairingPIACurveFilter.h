@@ -16,6 +16,7 @@
 #include "vtkFiltersIPIAParaViewModule.h" // for the export macro
 
 #include <memory> // for std::unique_ptr
+#include <string> // for std::string
 
 namespace ipia
 {
@@ -31,12 +32,20 @@ public:
   ///@{
   /**
    * Names in place of SetInputArrayToProcess 1, 2 and 3: weights of the control points on port 1
-   * (default FairingWeight), which of these may move (none: all), and the parameters of the data,
-   * of one component. A name that no array has is no array.
+   * (default FairingWeight), which of these may move if UseMovablePoints is on, and the parameters
+   * of the data, of one component. A name that no array has is no array.
    */
   void SetControlPointWeightsArray(const char* name);
   void SetMovablePointsArray(const char* name);
   void SetParametersArray(const char* name);
+  ///@}
+
+  ///@{
+  /**
+   * Whether only the movable points move. Default off: all.
+   */
+  void SetUseMovablePoints(bool use);
+  vtkGetMacro(UseMovablePoints, bool);
   ///@}
 
   vtkTypeBool ProcessRequest(
@@ -56,6 +65,8 @@ private:
   vtkPFairingPIACurveFilter(const vtkPFairingPIACurveFilter&) = delete;
   void operator=(const vtkPFairingPIACurveFilter&) = delete;
 
+  bool UseMovablePoints;
+  std::string MovablePoints;
   std::unique_ptr<ipia::HiddenArrays> Arrays;
 };
 

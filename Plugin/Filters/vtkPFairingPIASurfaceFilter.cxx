@@ -15,10 +15,11 @@
 vtkStandardNewMacro(vtkPFairingPIASurfaceFilter);
 
 vtkPFairingPIASurfaceFilter::vtkPFairingPIASurfaceFilter()
-  : Arrays(new ipia::HiddenArrays)
+  : UseMovablePoints(false)
+  , Arrays(new ipia::HiddenArrays)
 {
   this->Arrays->Hide(this, 1, 1, "FairingWeight");
-  this->Arrays->Hide(this, 2, 1, "None");
+  this->Arrays->Hide(this, 2, 1, ipia::HiddenArrays::NoArray);
 }
 
 vtkPFairingPIASurfaceFilter::~vtkPFairingPIASurfaceFilter() = default;
@@ -41,13 +42,21 @@ void vtkPFairingPIASurfaceFilter::SetControlPointWeightsArray(const char* name)
 
 void vtkPFairingPIASurfaceFilter::SetMovablePointsArray(const char* name)
 {
-  this->Arrays->Take(this, 2, name);
+  this->MovablePoints = name ? name : "";
+  this->Arrays->Take(
+    this, 2, this->UseMovablePoints ? this->MovablePoints.c_str() : ipia::HiddenArrays::NoArray);
+}
+
+void vtkPFairingPIASurfaceFilter::SetUseMovablePoints(bool use)
+{
+  this->UseMovablePoints = use;
+  this->SetMovablePointsArray(std::string(this->MovablePoints).c_str());
 }
 
 void vtkPFairingPIASurfaceFilter::SetParametersArray(const char* name)
 {
   const bool isActive = name && std::strcmp(name, ipia::ActiveTextureCoordinates) == 0;
-  this->Arrays->Take(this, 3, isActive ? "" : name);
+  this->Arrays->Take(this, 3, isActive ? nullptr : name);
 }
 
 vtkTypeBool vtkPFairingPIASurfaceFilter::ProcessRequest(

@@ -113,17 +113,17 @@ def test_a_later_round_takes_arrays_of_the_control_points():
         edited = before.NewInstance()
         edited.DeepCopy(before)
         movable = np.arange(len(points)) < len(points) // 4
-        edited.GetPointData().AddArray(named(movable, "movable"))
+        edited.GetPointData().SetScalars(named(movable, "movable"))
         edited.GetPointData().AddArray(named(np.full(len(points), 1e-3), "fair"))
         later = make(Input=source, ControlPoints=t.producer(edited), Solver="Sparse direct",
                      ControlPointWeights="fair")
         everywhere = np.abs(controls_of(later) - points).max(axis=1)
         assert (everywhere > 1e-6).mean() > 0.9, everywhere
-        later.MovablePoints = "movable"
+        later.MovablePoints, later.UseMovablePoints = "movable", 1
         moved = np.abs(controls_of(later) - points).max(axis=1)
         assert moved[~movable].max() == 0 and moved[movable].max() > 1e-6, moved
-        # The panel's None is no array: Fairing Weight holds.
-        later.MovablePoints = later.ControlPointWeights = "None"
+        # No such array: Fairing Weight holds.
+        later.UseMovablePoints, later.ControlPointWeights = 0, "None"
         assert np.abs(controls_of(later) - points).max() < 1e-9
 
 

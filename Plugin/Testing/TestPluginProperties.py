@@ -60,6 +60,7 @@ FAIRING_COMPANIONS = {
     "AutomaticFairingWeight": CHOSEN,
     "MaximumNumberOfIterations": {"Tolerance": 1e-3},
     "Parameters": {"Parametrization": "Given"},
+    "MovablePoints": {"UseMovablePoints": 1},
 }
 FAIRING_REFUSED = {("SampleDimensions", LARGEST_INT): "memory", ("NumberOfControlPoints", LARGEST_INT): "NumberOfControlPoints"}
 for outside in (-1.0, 1e12, math.inf):
@@ -228,7 +229,7 @@ def test_every_property_of_fairing():
     def data(filter_name):
         points, controls = fairing_data(filter_name)
         control_source = t.producer(controls)
-        later = ("ControlPointWeights", "MovablePoints")
+        later = ("ControlPointWeights", "MovablePoints", "UseMovablePoints")
         return t.producer(points), lambda name: {"ControlPoints": control_source} if name in later else {}
 
     every_property(FAIRING, data, FAIRING_COMPANIONS, FAIRING_REFUSED)
