@@ -269,8 +269,7 @@ std::string vtkFairingPIACurveFilter::Curves::read(const ipia::FairingParameters
   }
   if (weights)
   {
-    const std::string refusal =
-      ipia::checkWeights(ipia::toVector(weights), weights->GetName() ? weights->GetName() : "");
+    const std::string refusal = ipia::checkWeights(ipia::toVector(weights), ipia::nameOf(weights));
     if (!refusal.empty())
     {
       return refusal;
@@ -309,7 +308,8 @@ std::string vtkFairingPIACurveFilter::Curves::read(const ipia::FairingParameters
     std::string refusal = this->readEarlierRound();
     for (std::size_t k = 0; refusal.empty() && k < this->Rounds.size(); ++k)
     {
-      refusal = ipia::checkWeights(this->Rounds[k].ControlWeights, "FairingWeight");
+      refusal = ipia::checkWeights(this->Rounds[k].ControlWeights,
+        ipia::nameOf(this->Filter->GetInputArrayToProcess(1, this->Controls)));
     }
     return refusal;
   }

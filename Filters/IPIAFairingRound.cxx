@@ -3,10 +3,12 @@
 
 #include "Core/AutomaticFairing.h"
 #include "Core/Parametrization.h"
+#include "IPIAFitProblem.h"
 #include "IPIAText.h"
 #include "vtkFairingPIAFilter.h"
 
 #include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -21,6 +23,9 @@ namespace ipia
 {
 namespace
 {
+/// A sample's own arrays and cells.
+constexpr double BytesPerSample = 160;
+
 bool isWeight(double value)
 {
   return value >= 0 && value <= 1;
@@ -327,6 +332,25 @@ std::string checkWeights(const Vector& weights, const std::string& name)
       return text("Value ", k, " of the fairing weights \"", name, "\" is ", weights[k],
         "; weights lie in [0, 1], 0 for fitting alone and 1 for fairing alone.");
     }
+  }
+  return {};
+}
+
+std::string nameOf(vtkDataArray* array)
+{
+  return array && array->GetName() ? array->GetName() : "";
+}
+
+std::string checkSamples(double samples, vtkDataSet* data)
+{
+  const double needed =
+    samples * (BytesPerSample + sizeof(double) * data->GetPointData()->GetNumberOfComponents());
+  const double available = memoryOfMachine();
+  if (needed > MemoryShare * available)
+  {
+    constexpr double gibibyte = 1073741824;
+    return text("The samples would take about ", needed / gibibyte,
+      " GiB of memory; the machine has ", available / gibibyte, " GiB. Reduce SampleDimensions.");
   }
   return {};
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 class vtkDataArray;
+class vtkDataSet;
 class vtkDoubleArray;
 class vtkFieldData;
 class vtkPolyData;
@@ -85,6 +86,13 @@ double excessKnot(const std::vector<double>& interior, int degree);
 
 /// A message where a value of a weight array is not in [0, 1].
 std::string checkWeights(const Vector& weights, const std::string& name);
+
+/// The name of an array, or nothing.
+std::string nameOf(vtkDataArray* array);
+
+/// A message where so many samples with the arrays of the data are more than the machine's memory
+/// would hold.
+std::string checkSamples(double samples, vtkDataSet* data);
 
 /// The first component of an array.
 Vector toVector(vtkDataArray* array);

@@ -165,6 +165,12 @@ std::string vtkFairingPIASurfaceFilter::Surface::start(int degree)
         gridded ? ipia::text(" on a grid of ", most, " points it can be ", least, " to ", most, ".")
                 : ipia::text(" it must be ", least, " at least."));
     }
+    // Before knots of any number are made.
+    if (!gridded && n > MostControlPointsPerPoint * round.Data.Points.rows())
+    {
+      return ipia::text("NumberOfControlPoints along ", AxisNames[axis], " is ", n, ", more than ",
+        MostControlPointsPerPoint, " times the ", round.Data.Points.rows(), " points. Set fewer.");
+    }
     round.Spline.Axes[axis] = gridded
       ? ipia::averagedKnots(round.Data.Parameters[axis], degree, n, false)
       : ipia::uniformKnots(degree, n, false);
@@ -249,7 +255,7 @@ std::string vtkFairingPIASurfaceFilter::Surface::readEarlierRound()
   }
   round.ControlWeights = weights ? ipia::toVector(weights) : ipia::Vector();
   round.Movable = movable ? ipia::toVector(movable) : ipia::Vector();
-  return ipia::checkWeights(round.ControlWeights, "FairingWeight");
+  return ipia::checkWeights(round.ControlWeights, ipia::nameOf(weights));
 }
 
 std::string vtkFairingPIASurfaceFilter::Surface::read(const ipia::FairingParameters& parameters)
@@ -278,8 +284,7 @@ std::string vtkFairingPIASurfaceFilter::Surface::read(const ipia::FairingParamet
         "...).");
     }
     this->round().DataWeights = ipia::toVector(weights);
-    refusal =
-      ipia::checkWeights(this->round().DataWeights, weights->GetName() ? weights->GetName() : "");
+    refusal = ipia::checkWeights(this->round().DataWeights, ipia::nameOf(weights));
   }
   if (!refusal.empty())
   {

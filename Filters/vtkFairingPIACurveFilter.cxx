@@ -251,6 +251,11 @@ std::string vtkFairingPIACurveFilter::Fair(vtkInformationVector** input,
 {
   Curves curves(this, vtkPolyData::GetData(input[0]), vtkPolyData::GetData(input[1]));
   std::string refusal = curves.read(parameters);
+  if (refusal.empty())
+  {
+    const auto lines = static_cast<double>(curves.Rounds.size());
+    refusal = ipia::checkSamples(lines * this->SampleDimensions, vtkPolyData::GetData(input[0]));
+  }
   refusal = refusal.empty() ? curves.run(parameters) : refusal;
   if (!refusal.empty() || this->Aborted)
   {

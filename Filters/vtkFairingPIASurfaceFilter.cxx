@@ -263,6 +263,18 @@ std::string vtkFairingPIASurfaceFilter::Fair(vtkInformationVector** input,
 {
   Surface surface(this, vtkPointSet::GetData(input[0]), vtkPolyData::GetData(input[1]));
   std::string refusal = surface.read(parameters);
+  if (refusal.empty())
+  {
+    double samples = 1;
+    for (const std::size_t axis : { 0u, 1u })
+    {
+      const int asked = this->SampleDimensions[axis];
+      const std::size_t spans = surface.rounds().front().Spline.Axes[axis].spans().size() +
+        this->InsertedKnots[axis].size();
+      samples *= asked > 0 ? asked : static_cast<double>(SamplesPerSpan * spans + 1);
+    }
+    refusal = ipia::checkSamples(samples, vtkPointSet::GetData(input[0]));
+  }
   refusal = refusal.empty() ? surface.run(parameters) : refusal;
   if (!refusal.empty() || this->Aborted)
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IPIAGather.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
@@ -11,6 +12,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationExecutivePortKey.h"
 #include "vtkInformationVector.h"
+#include "vtkIntArray.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
@@ -18,7 +20,9 @@
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredGrid.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -40,20 +44,55 @@ void appendPoints(vtkDataObject* data, vtkMultiBlockDataSet* blocks)
   blocks->SetBlock(blocks->GetNumberOfBlocks(), block);
 }
 
+/// Field data of a block that was a structured grid: its extent.
+constexpr char ExtentName[] = "IPIA extent";
+
+/// As appendPoints, with the lines and field data of poly data and the extent of a grid.
+void appendShape(vtkDataObject* data, vtkMultiBlockDataSet* blocks)
+{
+  const unsigned int index = blocks->GetNumberOfBlocks();
+  appendPoints(data, blocks);
+  if (blocks->GetNumberOfBlocks() == index)
+  {
+    return;
+  }
+  auto* block = vtkPolyData::SafeDownCast(blocks->GetBlock(index));
+  block->GetFieldData()->ShallowCopy(data->GetFieldData());
+  if (auto* shape = vtkPolyData::SafeDownCast(data))
+  {
+    vtkNew<vtkPolyData> own;
+    own->ShallowCopy(shape);
+    own->RemoveGhostCells(); // lines that another rank has
+    block->SetLines(own->GetLines());
+  }
+  else if (auto* grid = vtkStructuredGrid::SafeDownCast(data))
+  {
+    vtkNew<vtkIntArray> extent;
+    extent->SetName(ExtentName);
+    for (int k = 0; k < 6; ++k)
+    {
+      extent->InsertNextValue(grid->GetExtent()[k]);
+    }
+    block->GetFieldData()->AddArray(extent);
+  }
+}
+
+using Append = void (*)(vtkDataObject*, vtkMultiBlockDataSet*);
+
 /// The leaves of a data object, which may be composite or nullptr.
-void appendLeaves(vtkDataObject* data, vtkMultiBlockDataSet* blocks)
+void appendLeaves(vtkDataObject* data, vtkMultiBlockDataSet* blocks, Append append)
 {
   if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
   {
     auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
     for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
     {
-      appendPoints(iterator->GetCurrentDataObject(), blocks);
+      append(iterator->GetCurrentDataObject(), blocks);
     }
   }
   else
   {
-    appendPoints(data, blocks);
+    append(data, blocks);
   }
 }
 
@@ -92,26 +131,11 @@ vtkPolyData* blockOf(vtkMultiBlockDataSet* blocks, unsigned int i)
 {
   return vtkPolyData::SafeDownCast(blocks->GetBlock(i));
 }
-}
 
-vtkMultiProcessController* parallelController()
-{
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  return controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr;
-}
-
-void requestOwnPart(vtkMultiProcessController* controller, vtkInformation* inputInfo)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  inputInfo->Set(Pipeline::UPDATE_PIECE_NUMBER(), controller->GetLocalProcessId());
-  inputInfo->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), controller->GetNumberOfProcesses());
-  inputInfo->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-}
-
-Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part)
+Gathered gather(vtkMultiProcessController* controller, vtkDataObject* part, Append append)
 {
   vtkNew<vtkMultiBlockDataSet> own;
-  appendLeaves(part, own);
+  appendLeaves(part, own, append);
   std::vector<vtkSmartPointer<vtkDataObject>> parts;
   controller->Gather(own, parts, 0);
 
@@ -145,6 +169,184 @@ Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part
     gathered.Data = blocks->GetNumberOfBlocks() == 1 ? blockOf(blocks, 0) : empty.Get();
   }
   return gathered;
+}
+
+constexpr char NotOneGrid[] =
+  "The pieces of the grid that the ranks of the server or the blocks of the input have do not make "
+  "up one grid: ";
+
+/// The grid that pieces make up, whose points and arrays are in `points` one piece after the other,
+/// and why there is none. What several pieces have must be the same.
+std::string assembleGrid(
+  const std::vector<vtkIntArray*>& extents, vtkPolyData* points, vtkStructuredGrid* grid)
+{
+  int whole[6] = { VTK_INT_MAX, VTK_INT_MIN, VTK_INT_MAX, VTK_INT_MIN, VTK_INT_MAX, VTK_INT_MIN };
+  for (vtkIntArray* extent : extents)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      whole[2 * axis] = std::min(whole[2 * axis], extent->GetValue(2 * axis));
+      whole[2 * axis + 1] = std::max(whole[2 * axis + 1], extent->GetValue(2 * axis + 1));
+    }
+  }
+  vtkIdType total = 1;
+  vtkIdType step[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    step[axis] = total;
+    total *= static_cast<vtkIdType>(whole[2 * axis + 1]) - whole[2 * axis] + 1;
+    if (total > points->GetNumberOfPoints())
+    {
+      return std::string(NotOneGrid) + "points are missing.";
+    }
+  }
+  std::vector<vtkIdType> source(static_cast<std::size_t>(total), -1);
+  vtkIdType next = 0;
+  for (vtkIntArray* extent : extents)
+  {
+    const int* e = extent->GetPointer(0);
+    for (int k = e[4]; k <= e[5]; ++k)
+    {
+      for (int j = e[2]; j <= e[3]; ++j)
+      {
+        for (int i = e[0]; i <= e[1]; ++i, ++next)
+        {
+          vtkIdType& id = source[static_cast<std::size_t>(
+            step[0] * (i - whole[0]) + step[1] * (j - whole[2]) + step[2] * (k - whole[4]))];
+          double x[3], other[3];
+          points->GetPoint(next, x);
+          points->GetPoint(id < 0 ? next : id, other);
+          if (!std::equal(x, x + 3, other))
+          {
+            return std::string(NotOneGrid) + "a point of several pieces is not at one place.";
+          }
+          id = id < 0 ? next : id;
+        }
+      }
+    }
+  }
+  if (std::find(source.begin(), source.end(), -1) != source.end())
+  {
+    return std::string(NotOneGrid) + "points are missing.";
+  }
+  grid->SetExtent(whole);
+  vtkNew<vtkPoints> ordered;
+  ordered->SetDataType(points->GetPoints()->GetDataType());
+  ordered->SetNumberOfPoints(total);
+  grid->SetPoints(ordered);
+  vtkPointData* arrays = grid->GetPointData();
+  arrays->CopyAllOn();
+  arrays->CopyAllocate(points->GetPointData(), total);
+  for (vtkIdType i = 0; i < total; ++i)
+  {
+    const vtkIdType id = source[static_cast<std::size_t>(i)];
+    ordered->SetPoint(i, points->GetPoint(id));
+    arrays->CopyData(points->GetPointData(), id, i);
+  }
+  arrays->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  return {};
+}
+}
+
+vtkMultiProcessController* parallelController()
+{
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  return controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr;
+}
+
+void requestOwnPart(vtkMultiProcessController* controller, vtkInformation* inputInfo)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  inputInfo->Set(Pipeline::UPDATE_PIECE_NUMBER(), controller->GetLocalProcessId());
+  inputInfo->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), controller->GetNumberOfProcesses());
+  inputInfo->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+}
+
+Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part)
+{
+  return gather(controller, part, appendPoints);
+}
+
+GatheredShape gatherShape(vtkMultiProcessController* controller, vtkDataObject* part)
+{
+  const Gathered gathered = gather(controller, part, appendShape);
+  GatheredShape shape;
+  shape.RanksWithPoints = gathered.RanksWithPoints;
+  std::vector<vtkPolyData*> blocks;
+  if (auto* several = vtkMultiBlockDataSet::SafeDownCast(gathered.Data))
+  {
+    for (unsigned int i = 0; i < several->GetNumberOfBlocks(); ++i)
+    {
+      blocks.push_back(blockOf(several, i));
+    }
+  }
+  else if (auto* one = vtkPolyData::SafeDownCast(gathered.Data))
+  {
+    blocks.push_back(one);
+  }
+  shape.NumberOfParts = static_cast<int>(blocks.size());
+  std::vector<vtkIntArray*> extents;
+  vtkNew<vtkAppendPolyData> append;
+  for (vtkPolyData* block : blocks)
+  {
+    append->AddInputData(block);
+    auto* extent = vtkIntArray::SafeDownCast(block->GetFieldData()->GetArray(ExtentName));
+    if (extent && block->GetNumberOfPoints() > 0)
+    {
+      extents.push_back(extent);
+    }
+  }
+  vtkSmartPointer<vtkPolyData> points = vtkSmartPointer<vtkPolyData>::New();
+  if (blocks.size() == 1)
+  {
+    points = blocks.front(); // with its field data
+  }
+  else if (!blocks.empty())
+  {
+    append->Update();
+    points = append->GetOutput();
+  }
+  if (extents.empty())
+  {
+    shape.Data = points;
+  }
+  else if (extents.size() < blocks.size())
+  {
+    shape.Refusal = std::string(NotOneGrid) + "some are no structured grids.";
+  }
+  else
+  {
+    vtkNew<vtkStructuredGrid> grid;
+    shape.Refusal = assembleGrid(extents, points, grid);
+    shape.Data = grid;
+  }
+  return shape;
+}
+
+GatheredShapes::GatheredShapes(
+  vtkMultiProcessController* controller, vtkInformationVector** input, int numberOfPorts)
+  : Input(input, numberOfPorts)
+{
+  for (int port = 0; port < numberOfPorts; ++port)
+  {
+    // The same on all ranks: connections are those of the session.
+    if (input[port]->GetNumberOfInformationObjects() > 0)
+    {
+      const GatheredShape shape = gatherShape(controller, vtkDataObject::GetData(input[port]));
+      this->Input.Set(port, shape.Data);
+      this->Refusal = this->Refusal.empty() ? shape.Refusal : this->Refusal;
+      if (port == 0)
+      {
+        this->RanksWithPoints = shape.RanksWithPoints;
+      }
+      else if (shape.NumberOfParts > 1 && this->Refusal.empty())
+      {
+        this->Refusal =
+          "The control points on port 1 are in several parts, on several ranks of the "
+          "server or in several blocks. Connect output 1 of an earlier round.";
+      }
+    }
+  }
 }
 
 vtkDataObject* SteadyCopy::Of(vtkInformation* input)

@@ -10,6 +10,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <string>
 #include <vector>
 
 class vtkDataObject;
@@ -39,6 +40,22 @@ struct Gathered
 /// Collective: every rank calls it, with its own part of the data (or nullptr). Points and point
 /// arrays travel, cells do not: a fit does not use them.
 Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part);
+
+/// What one rank has gathered with its shape.
+struct GatheredShape
+{
+  /// On the first rank poly data with the points and lines of all ranks, one after the other in
+  /// their order, or the structured grid that all pieces make up; on the others, empty poly data.
+  vtkSmartPointer<vtkDataObject> Data;
+  int RanksWithPoints = 0;
+  /// How many data sets had points.
+  int NumberOfParts = 0;
+  /// Why the pieces of a grid make up none, or nothing.
+  std::string Refusal;
+};
+
+/// As gatherPoints, for filters that need lines, grids and field data (that of one data set only).
+GatheredShape gatherShape(vtkMultiProcessController* controller, vtkDataObject* part);
 
 /// A copy of a filter's input that stays the same object for as long as the input does. ParaView
 /// puts a filter before each input that copies it whenever anything is updated: to a fitter that
@@ -70,6 +87,17 @@ public:
 private:
   int NumberOfPorts;
   vtkInformationVector** Vectors;
+};
+
+/// The input of a fairing filter as gathered on the first rank. Collective.
+struct GatheredShapes
+{
+  GatheredShapes(
+    vtkMultiProcessController* controller, vtkInformationVector** input, int numberOfPorts);
+
+  ReplacedInput Input;
+  int RanksWithPoints = 0; ///< of port 0, on the first rank
+  std::string Refusal;     ///< why there is nothing to fair, or nothing
 };
 }
 

@@ -13,10 +13,12 @@
 #include "vtkIndent.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
+#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <ostream>
 #include <string>
 
@@ -40,7 +42,8 @@ inline std::array<double, 6> boundsOfBox(
 
 /// The values of extra rows as an array to process, and what the panel offers beside names.
 constexpr int ExtraValuesIndex = 2;
-constexpr char ActiveScalars[] = "Active scalars"; // as in IPIA.xml
+constexpr char ActiveScalars[] = "Active scalars";                        // as in IPIA.xml
+constexpr char ActiveTextureCoordinates[] = "Active texture coordinates"; // as in Fairing.xml
 
 /// ParaView's choice of the array of extra rows. ParaView 5.11 crashes where the first array of an
 /// input port has an index above 0: it sees this one (index 2 of port 1) only while the filter
@@ -85,6 +88,71 @@ public:
 
 private:
   std::string ExtraValues;
+};
+
+/// Arrays to process by their indices that ParaView 5.11, for the reason above, sees only while the
+/// filter works.
+class HiddenArrays
+{
+public:
+  static constexpr const char* NoArray = "None";
+
+  /// nullptr: what the filter takes by itself; an empty name, as the panel's None: no array.
+  void Take(vtkAlgorithm* filter, int index, const char* name)
+  {
+    const std::string chosen = !name ? "" : *name == 0 ? NoArray : name;
+    if (chosen != this->Names[index])
+    {
+      this->Names[index] = chosen;
+      filter->Modified();
+    }
+  }
+
+  /// Shows the filter its arrays for as long as this lives.
+  class Shown
+  {
+  public:
+    Shown(const HiddenArrays& hidden, vtkAlgorithm* filter)
+      : Filter(filter)
+    {
+      for (const auto& [index, name] : hidden.Names)
+      {
+        if (!name.empty())
+        {
+          vtkInformation* info = filter->GetInputArrayInformation(index);
+          auto& before = this->Before[index];
+          before = vtkSmartPointer<vtkInformation>::New();
+          before->Copy(info);
+          info->Remove(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
+          info->Set(vtkDataObject::FIELD_NAME(), name.c_str());
+        }
+      }
+    }
+    ~Shown()
+    {
+      for (const auto& [index, before] : this->Before)
+      {
+        this->Filter->GetInputArrayInformation(index)->Copy(before);
+      }
+    }
+    Shown(const Shown&) = delete;
+    void operator=(const Shown&) = delete;
+
+  private:
+    vtkAlgorithm* Filter;
+    std::map<int, vtkSmartPointer<vtkInformation>> Before;
+  };
+
+  /// Hides an array that the filter has chosen by name.
+  void Hide(vtkAlgorithm* filter, int index, int port, const char* name)
+  {
+    filter->SetInputArrayToProcess(index, port, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+    filter->GetInputArrayInformation(index)->Remove(vtkDataObject::FIELD_NAME());
+    this->Names[index] = name;
+  }
+
+private:
+  std::map<int, std::string> Names;
 };
 
 /// Whether ParaView has chosen no array to process yet, as in a script that has not updated the

@@ -90,6 +90,71 @@ def test_surface_gets_fairer():
     assert energies[1] < energies[0], energies
 
 
+def named(values, name):
+    array = numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=True)
+    array.SetName(name)
+    return array
+
+
+def controls_of(proxy):
+    return vtk_to_numpy(results(proxy)[1].GetPoints().GetData()).copy()
+
+
+def test_a_later_round_takes_arrays_of_the_control_points():
+    for make, data in ((simple.FairingPIACurve, uneven_circle()), (simple.FairingPIASurface, uneven_wave())):
+        source = t.producer(data)
+        first = make(Input=source, Solver="Sparse direct")
+        before = results(first)[1]
+        points = vtk_to_numpy(before.GetPoints().GetData()).copy()
+        again = make(Input=source, Solver="Sparse direct",
+                     ControlPoints=servermanager.OutputPort(first, 1))
+        assert np.abs(controls_of(again) - points).max() < 1e-9
+        # Edited, as by Calculator.
+        edited = before.NewInstance()
+        edited.DeepCopy(before)
+        movable = np.arange(len(points)) < len(points) // 4
+        edited.GetPointData().SetScalars(named(movable, "movable"))
+        edited.GetPointData().AddArray(named(np.full(len(points), 1e-3), "fair"))
+        later = make(Input=source, ControlPoints=t.producer(edited), Solver="Sparse direct",
+                     ControlPointWeights="fair")
+        everywhere = np.abs(controls_of(later) - points).max(axis=1)
+        assert (everywhere > 1e-6).mean() > 0.9, everywhere
+        later.MovablePoints, later.UseMovablePoints = "movable", 1
+        moved = np.abs(controls_of(later) - points).max(axis=1)
+        assert moved[~movable].max() == 0 and moved[movable].max() > 1e-6, moved
+        # No such array: Fairing Weight holds.
+        later.UseMovablePoints, later.ControlPointWeights = 0, "None"
+        assert np.abs(controls_of(later) - points).max() < 1e-9
+
+
+def test_given_parameters():
+    line = uneven_circle()
+    u = np.linspace(0, 1, line.GetNumberOfPoints())
+    line.GetPointData().AddArray(named(u**1.1, "t"))
+    curve = simple.FairingPIACurve(Input=t.producer(line), Parametrization="Given", Parameters="t")
+    with t.Messages() as messages:
+        _, _, data = results(curve)
+    assert not messages.errors, messages.errors
+    found = vtk_to_numpy(data.GetPointData().GetArray("Parameter"))
+    assert np.abs(found - u[: len(found)] ** 1.1).max() < 1e-12
+    curve.Parameters = "None"
+    with t.Messages() as messages:
+        results(curve)
+    assert len(messages.errors) == 1 and "no array of parameters" in messages.errors[0], messages.errors
+
+    grid = uneven_wave()
+    uv = vtk_to_numpy(grid.GetPoints().GetData())[:, :2]
+    grid.GetPointData().AddArray(named(uv, "uv"))
+    grid.GetPointData().SetTCoords(named(uv[:, ::-1], "vu"))
+    surface = simple.FairingPIASurface(Input=t.producer(grid), Parametrization="Given", Solver="Sparse direct")
+    for choice, expected in (("Active texture coordinates", uv[:, ::-1]), ("uv", uv)):
+        surface.Parameters = choice
+        with t.Messages() as messages:
+            _, _, data = results(surface)
+        assert not messages.errors, messages.errors
+        assert np.abs(vtk_to_numpy(data.GetPointData().GetArray("Parameter")) - expected).max() < 1e-12
+
+
 def test_refusals_reach_the_messages():
     curve = simple.FairingPIACurve(Input=t.producer(uneven_circle()), FairingWeight=2.0)
     with t.Messages() as messages:

@@ -8,7 +8,10 @@ import sys
 
 import numpy as np
 from paraview import servermanager, simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStructuredGrid
+from vtkmodules.vtkIOXML import vtkXMLStructuredGridWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 import plugin_testing as t
@@ -48,6 +51,126 @@ def write_pieces(path):
         file.write(PIECES)
 
 
+LINES = """<VTKFile type="PPolyData" version="0.1" byte_order="LittleEndian">
+  <PPolyData GhostLevel="0">
+    <PPointData TCoords="uv">
+      <PDataArray type="Float64" Name="uv" NumberOfComponents="2"/>
+    </PPointData>
+    <PPoints>
+      <PDataArray type="Float64" Name="Points" NumberOfComponents="3"/>
+    </PPoints>
+    <Piece Source="lines_0.vtp"/>
+    <Piece Source="lines_1.vtp"/>
+  </PPolyData>
+</VTKFile>
+"""
+GRID = """<VTKFile type="PStructuredGrid" version="0.1" byte_order="LittleEndian">
+  <PStructuredGrid WholeExtent="0 29 0 24 0 0" GhostLevel="0">
+    <PPointData>
+      <PDataArray type="Float64" Name="w" NumberOfComponents="1"/>
+    </PPointData>
+    <PPoints>
+      <PDataArray type="Float64" Name="Points" NumberOfComponents="3"/>
+    </PPoints>
+    <Piece Extent="0 13 0 24 0 0" Source="grid_0.vts"/>
+    <Piece Extent="13 29 0 24 0 0" Source="grid_1.vts"/>
+  </PStructuredGrid>
+</VTKFile>
+"""
+
+
+def wave(u, v):
+    return np.stack((u, v, 0.2 * np.sin(3 * u) * np.cos(3 * v) + 0.01 * np.sin(40 * u + 30 * v)), -1)
+
+
+def write_grid(name, begin, end):
+    """Columns of a wave of 30 x 25 points."""
+    v, u = np.meshgrid(np.linspace(0, 1, 25), np.linspace(0, 1, 30)[begin:end], indexing="ij")
+    grid = vtkStructuredGrid()
+    grid.SetExtent(begin, end - 1, 0, 24, 0, 0)
+    grid.SetPoints(vtkPoints())
+    grid.GetPoints().SetData(numpy_to_vtk(wave(u, v).reshape(-1, 3), deep=True))
+    weights = numpy_to_vtk(np.where(u.ravel() < 0.5, 1e-7, 1e-5), deep=True)
+    weights.SetName("w")
+    grid.GetPointData().AddArray(weights)
+    writer = vtkXMLStructuredGridWriter()
+    writer.SetFileName(t.output(name))
+    writer.SetInputData(grid)
+    writer.SetDataModeToBinary()
+    assert writer.Write()
+
+
+def write_fairing_data():
+    """Points in two files, each with a line through its own, and a grid in two pieces and in one."""
+    for piece, count in enumerate((300, 200)):
+        u = np.linspace(0, 1, count)
+        v = (np.arange(count) * 0.618034 + 0.3 * piece) % 1
+        data = vtkPolyData()
+        data.SetPoints(vtkPoints())
+        data.GetPoints().SetData(numpy_to_vtk(wave(u, v * (1 - piece) + 0.2), deep=True))
+        lines = vtkCellArray()
+        lines.InsertNextCell(count, list(range(count)))
+        data.SetLines(lines)
+        uv = numpy_to_vtk(np.stack((u, v), 1), deep=True)
+        uv.SetName("uv")
+        data.GetPointData().SetTCoords(uv)
+        t.write(f"lines_{piece}.vtp", data)
+    write_grid("grid_0.vts", 0, 14)
+    write_grid("grid_1.vts", 13, 30)
+    write_grid("grid.vts", 0, 30)
+    for name, text in (("lines.pvtp", LINES), ("grid.pvts", GRID)):
+        with open(t.output(name), "w", encoding="ascii") as file:
+            file.write(text)
+
+
+def fairing():
+    """Points of the outputs of the fairing filters, by what was faired."""
+    if ranks == 1:
+        write_fairing_data()
+    lines = simple.XMLPartitionedPolydataReader(FileName=[t.output("lines.pvtp")])
+    pieces = simple.XMLPartitionedStructuredGridReader(FileName=[t.output("grid.pvts")])
+    whole = simple.XMLStructuredGridReader(FileName=[t.output("grid.vts")])
+    direct = {"Solver": "Sparse direct"}
+    curve = simple.FairingPIACurve(Input=lines, **direct)
+    grid = simple.FairingPIASurface(Input=pieces, Weights=["POINTS", "w"], **direct)
+    faired = {
+        "curves": curve,
+        "curves again": simple.FairingPIACurve(
+            Input=lines, ControlPoints=servermanager.OutputPort(curve, 1), **direct),
+        "one block": simple.FairingPIACurve(Input=simple.GroupDatasets(Input=[lines]), **direct),
+        "grid": grid,
+        "grid again": simple.FairingPIASurface(
+            Input=pieces, ControlPoints=servermanager.OutputPort(grid, 1), **direct),
+        "grid of one file": simple.FairingPIASurface(Input=whole, **direct),
+        "scattered": simple.FairingPIASurface(Input=lines, Parametrization="Given", **direct),
+    }
+    results = {}
+    for name, proxy in faired.items():
+        with t.Messages() as messages:
+            proxy.UpdatePipeline()
+        assert not messages.errors, (name, messages.errors)
+        warned = [text for text in messages.warnings if "are fitted on the first of" in text]
+        assert len(warned) == (ranks > 1), (name, messages.warnings)
+        data = proxy.GetClientSideObject().GetOutputDataObject(0)
+        data = data.GetBlock(0) if data.IsA("vtkMultiBlockDataSet") else data
+        results[name] = vtk_to_numpy(data.GetPoints().GetData())
+        count = proxy.GetDataInformation().GetNumberOfPoints()  # of all ranks
+        assert count == len(results[name]) > 0, (name, count, len(results[name]))
+    own = pieces.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints()
+    assert (own == 750) == (ranks == 1), own
+
+    # Blocks that are each a grid are no pieces of one: faired one by one, or on several ranks refused.
+    moved = simple.Transform(Input=whole)
+    moved.Transform.Translate = [0.0, 0.0, 1.0]
+    blocks = simple.FairingPIASurface(Input=simple.GroupDatasets(Input=[whole, moved]), **direct)
+    with t.Messages() as messages:
+        blocks.UpdatePipeline()
+    assert (blocks.GetDataInformation().GetNumberOfPoints() == 0) == (ranks > 1)
+    assert bool(messages.errors) == (ranks > 1), messages.errors
+    assert all("do not make up one grid" in text for text in messages.errors), messages.errors
+    return results
+
+
 def main(expected_ranks):
     assert ranks == expected_ranks, ranks
     # A file of two pieces: each rank reads its own.
@@ -85,6 +208,17 @@ def main(expected_ranks):
     assert not messages.errors, messages.errors
     gathered = [text for text in messages.warnings if "are fitted on the first of" in text]
     assert bool(gathered) == (ranks > 1), messages.warnings
+
+    faired = fairing()
+    if ranks == 1:
+        np.savez(t.output("parallel_faired.npz"), **faired)
+    else:
+        single = np.load(t.output("parallel_faired.npz"))
+        for name, points in faired.items():
+            assert points.shape == single[name].shape, name
+            found = np.abs(points - single[name]).max()
+            print(f"{name}: {len(points)} points differ by {found:.3g}")
+            assert found < 1e-12, (name, found)
 
     image = fitter.GetClientSideObject().GetOutputDataObject(0)
     f = vtk_to_numpy(image.GetPointData().GetArray("f"))

@@ -5,10 +5,13 @@ import sys
 
 import numpy as np
 from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import plugin_testing as t
+from TestPluginFairing import named, results, uneven_circle, uneven_wave
 
 FILTERS = ("IPIAImplicitFitter", "IPIASurfaceReconstruction", "IPIAOrientedPointCloud")
+FAIRING = ("FairingPIACurve", "FairingPIASurface")
 LARGEST_INT = 2**31 - 1
 INTS = (-LARGEST_INT - 1, -1, 0, 1, 2, 3, 4, 5, 11, 21, LARGEST_INT)
 DOUBLES = (-1e308, -1.0, -1e-300, 0.0, 1e-300, 1e-12, 1.0, 1e12, 1e308, math.inf, -math.inf, math.nan)
@@ -50,6 +53,35 @@ REFUSED = {
 }
 
 
+# The fairing filters.
+CHOSEN = {"AutomaticFairing": "Second difference"}
+FAIRING_COMPANIONS = {
+    "AutomaticShare": CHOSEN,
+    "AutomaticFairingWeight": CHOSEN,
+    "MaximumNumberOfIterations": {"Tolerance": 1e-3},
+    "Parameters": {"Parametrization": "Given"},
+    "MovablePoints": {"UseMovablePoints": 1},
+}
+FAIRING_REFUSED = {("SampleDimensions", LARGEST_INT): "memory", ("NumberOfControlPoints", LARGEST_INT): "NumberOfControlPoints"}
+for outside in (-1.0, 1e12, math.inf):
+    for weight in ("FairingWeight", "AutomaticFairingWeight", "AutomaticShare"):
+        FAIRING_REFUSED[(weight, outside)] = weight
+for negative in (-1.0, -1e-300, -math.inf):
+    FAIRING_REFUSED[("Tolerance", negative)] = "Tolerance"
+    FAIRING_REFUSED[("StepSize", negative)] = "StepSize"
+FAIRING_REFUSED.update({
+    ("NumberOfControlPoints", 1): "NumberOfControlPoints",
+    ("NumberOfControlPoints", 3): "NumberOfControlPoints",
+    ("Degree", 1): "DerivativeOrder",
+    ("Parametrization", 3): "Parametrization is Given",
+    ("Weights", "zz"): "zz",
+    ("Parameters", "zz"): "parameter",
+    ("Parameters", "None"): "Parametrization is Given",
+    ("ControlPointWeights", "zz"): '"zz"',
+    ("StepSize", 1e12): "diverged",
+})
+
+
 def cloud():
     points, normals = t.sphere(400)
     return t.polydata(
@@ -70,6 +102,23 @@ def values_of(prop):
     return ("Normals", "Weight", "zz", "nx", "no such array", "None", "")
 
 
+def fairing_data(name):
+    """What a fairing filter takes, and its control points, with arrays to choose."""
+    data = uneven_circle(60) if name == "FairingPIACurve" else uneven_wave(12)
+    first = getattr(simple, name)(Input=t.producer(data))
+    controls = results(first)[1]
+    copy = controls.NewInstance()
+    copy.DeepCopy(controls)
+    simple.Delete(first)
+    for some in (data, copy):
+        count = some.GetNumberOfPoints()
+        parts = [("Weight", np.linspace(0, 1e-3, count)), ("nx", np.linspace(-1, 1, count)),
+                 ("zz", np.linspace(0.5, np.nan, count)), ("Normals", np.ones((count, 3)))]
+        for label, values in parts:
+            some.GetPointData().AddArray(named(values, label))
+    return data, copy
+
+
 def assign(proxy, name, value):
     """As a state file would, which no domain checks."""
     prop = proxy.SMProxy.GetProperty(name)
@@ -81,19 +130,26 @@ def assign(proxy, name, value):
     proxy.SMProxy.UpdateVTKObjects()
 
 
+FINITE = ("f", "Normals", "Gradient", "Curvature", "Torsion", "MeanCurvature", "GaussCurvature", "FitError")
+
+
 def finite(data):
     for i in range(data.GetPointData().GetNumberOfArrays()):
         array = data.GetPointData().GetArray(i)
-        if array and array.GetName() in ("f", "Normals", "Gradient"):
+        if array and array.GetName() in FINITE:
             low, high = array.GetRange(-1) if array.GetNumberOfComponents() > 1 else array.GetRange()
             if not (math.isfinite(low) and math.isfinite(high)):
                 return False
     return True
 
 
-def check(make, name, value, source, found):
-    proxy = make(Input=source)
-    for other, given in COMPANIONS.get(name, {}).items():
+def places(data):
+    return vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.zeros((0, 3))
+
+
+def check(make, name, value, source, found, companions, **inputs):
+    proxy = make(Input=source, **inputs)
+    for other, given in companions.get(name, {}).items():
         if other != name and hasattr(proxy, other):
             setattr(proxy, other, given)
     what = f"{proxy.GetXMLName()}.{name} = {value}"
@@ -111,39 +167,87 @@ def check(make, name, value, source, found):
             wrong = f"a message and a result: {messages.errors[0]}"
     elif value != "zz" and not finite(data):  # no surface is a result: f can be positive everywhere
         wrong = "not finite, and no message"
-    elif data.IsA("vtkImageData") and data.GetNumberOfPoints() == 0:
+    elif proxy.GetXMLName() in FAIRING and not np.isfinite(places(data)).all():
+        wrong = "points that are not finite, and no message"
+    elif (data.IsA("vtkImageData") or proxy.GetXMLName() in FAIRING) and data.GetNumberOfPoints() == 0:
         wrong = "empty, and no message"
     simple.Delete(proxy)
     return f"{what}: {wrong}" if wrong else None
 
 
-def test_every_property():
-    found, failures = {}, []
-    source = t.producer(cloud())
-    manager = servermanager.ProxyManager()
-    for filter_name in FILTERS:
-        prototype = manager.GetPrototypeProxy("filters", filter_name)
-        iterator = prototype.NewPropertyIterator()
-        names = []
-        while not iterator.IsAtEnd():
-            if not iterator.GetProperty().IsA("vtkSMInputProperty"):
-                names.append(iterator.GetKey())
-            iterator.Next()
-        assert len(names) >= 6, names
-        for name in names:
+def names_of(filter_name):
+    prototype = servermanager.ProxyManager().GetPrototypeProxy("filters", filter_name)
+    iterator = prototype.NewPropertyIterator()
+    names = {}
+    while not iterator.IsAtEnd():
+        if not iterator.GetProperty().IsA("vtkSMInputProperty"):
+            names[iterator.GetKey()] = values_of(iterator.GetProperty())
+        iterator.Next()
+    assert len(names) >= 6, names
+    return names
+
+
+def every_property(filters, data, companions, refused):
+    """The message of each value that is refused, which is told to be so by `refused`."""
+    failures = []
+    found = {}
+    for filter_name in filters:
+        source, inputs = data(filter_name)
+        for name, values in names_of(filter_name).items():
             if len(sys.argv) > 2 and sys.argv[2] != name:
                 continue
-            for value in values_of(prototype.GetProperty(name)):
-                wrong = check(getattr(simple, filter_name), name, value, source, found)
+            for value in values:
+                wrong = check(
+                    getattr(simple, filter_name), name, value, source, found, companions,
+                    **inputs(name))
                 if wrong:
                     failures.append(wrong)
+        if filter_name in FAIRING:  # each by itself
+            failures += missing(found, refused, filter_name)
+            found = {}
+    if found:
+        failures += missing(found, refused, "filters")
+    assert not failures, "\n".join(failures)
+
+
+def missing(found, refused, what):
     for (name, value), text in found.items():
         print(f"{name} = {value}: {text.strip().splitlines()[-1]}")
-    for key, word in REFUSED.items():
-        if len(sys.argv) < 3 or sys.argv[2] == key[0]:
-            if word not in found.get(key, ""):
-                failures.append(f"{key}: '{word}' is not in the message '{found.get(key)}'")
-    assert not failures, "\n".join(failures)
+    return [
+        f"{what}, {key}: '{word}' is not in the message '{found.get(key)}'"
+        for key, word in refused.items()
+        if (len(sys.argv) < 3 or sys.argv[2] == key[0]) and word not in found.get(key, "")
+    ]
+
+
+def test_every_property():
+    source = t.producer(cloud())
+    every_property(FILTERS, lambda _: (source, lambda name: {}), COMPANIONS, REFUSED)
+
+
+def test_every_property_of_fairing():
+    def data(filter_name):
+        points, controls = fairing_data(filter_name)
+        control_source = t.producer(controls)
+        later = ("ControlPointWeights", "MovablePoints", "UseMovablePoints")
+        return t.producer(points), lambda name: {"ControlPoints": control_source} if name in later else {}
+
+    every_property(FAIRING, data, FAIRING_COMPANIONS, FAIRING_REFUSED)
+
+
+def test_numbers_of_control_points_of_scattered_points():
+    data, _ = fairing_data("FairingPIASurface")
+    uv = vtk_to_numpy(data.GetPoints().GetData())[:, :2]
+    data.GetPointData().SetTCoords(named(uv, "uv"))
+    source = t.producer(data)
+    companions = {"NumberOfControlPoints": {"Parametrization": "Given"}}
+    found = {}
+    for value in INTS:
+        wrong = check(simple.FairingPIASurface, "NumberOfControlPoints", value, source, found, companions)
+        assert not wrong, wrong
+    refused = sorted(value for _, value in found)
+    assert refused == [-LARGEST_INT - 1, -1, 1, 2, 3, LARGEST_INT], found
+    assert all("NumberOfControlPoints" in text for text in found.values()), found
 
 
 if __name__ == "__main__":
