@@ -3,10 +3,9 @@
 
 #include "Core/AutomaticLattice.h"
 #include "IPIAControlLattice.h"
+#include "IPIAMemory.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFitter.h"
-
-#include "vtksys/SystemInformation.hxx"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +21,6 @@ constexpr double HierarchicalSpacing = 0.85, ClassicSpacing = 1.6;
 constexpr double FewestSpacings = 8, MostSpacings = 256;
 /// No more samples than this unless the user asks for them.
 constexpr double MostAutomaticSamples = 268435456; // 2^28
-/// Share of the machine's memory that a fit may be expected to take.
-constexpr double MemoryShare = 0.9;
 /// Bytes that the fit needs per coefficient and per row, all its arrays together.
 constexpr double BytesPerCoefficient = 96, BytesPerRow = 160;
 /// And where the spline is rational: of its iteration per coefficient, and per sample of the slices
@@ -34,13 +31,6 @@ constexpr double BytesPerBrick = 2048, BytesPerAbsentBrick = 16;
 /// Bricks around a brick with data, and layers of them on both sides of a surface that crosses the
 /// lattice twice along every axis.
 constexpr double BricksAroundOne = 27, LayersOfBricks = 6;
-
-double memoryOfMachine()
-{
-  vtksys::SystemInformation information;
-  information.RunMemoryCheck();
-  return 1024.0 * static_cast<double>(information.GetHostMemoryTotal());
-}
 }
 
 bool FitParameters::isClassic() const
@@ -368,11 +358,10 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
   const double available = memoryOfMachine();
   if (needed > MemoryShare * available)
   {
-    constexpr double gibibyte = 1073741824;
-    this->Refusal = text("The fit would take about ", needed / gibibyte,
+    this->Refusal = text("The fit would take about ", needed / Gibibyte,
       " GiB of memory (GridSize ", this->GridSize[0], " x ", this->GridSize[1], " x ",
       this->GridSize[2], ", ", this->WholeExtent[1] + 1, " x ", this->WholeExtent[3] + 1, " x ",
-      this->WholeExtent[5] + 1, " samples); the machine has ", available / gibibyte,
+      this->WholeExtent[5] + 1, " samples); the machine has ", available / Gibibyte,
       " GiB. Reduce GridSize or SampleDimensions.");
   }
 }
