@@ -166,13 +166,6 @@ std::string vtkFairingPIACurveFilter::Curves::readEarlierRound()
     return ipia::text("DerivativeOrder is ", this->Filter->DerivativeOrder,
       " and the control points on port 1 are of degree ", p, ". Set a lower DerivativeOrder.");
   }
-  vtkDataArray *weights = nullptr, *movable = nullptr;
-  refusal = refusal.empty() ? ipia::chooseArray(this->Filter, 1, this->Controls, 1,
-                                "fairing weights of control points", weights)
-                            : refusal;
-  refusal = refusal.empty()
-    ? ipia::chooseArray(this->Filter, 2, this->Controls, 1, "control points that may move", movable)
-    : refusal;
   if (!refusal.empty())
   {
     return refusal;
@@ -189,6 +182,16 @@ std::string vtkFairingPIACurveFilter::Curves::readEarlierRound()
   {
     return ipia::text("The knots on port 1 ask for ", total, " control points, ",
       this->Controls->GetNumberOfPoints(), " are there. Connect output 1 of an earlier round.");
+  }
+  vtkDataArray *weights = nullptr, *movable = nullptr;
+  refusal = ipia::chooseArray(
+    this->Filter, 1, this->Controls, 1, "fairing weights of control points", weights);
+  refusal = refusal.empty()
+    ? ipia::chooseArray(this->Filter, 2, this->Controls, 1, "control points that may move", movable)
+    : refusal;
+  if (!refusal.empty())
+  {
+    return refusal;
   }
   vtkIdType first = 0;
   for (std::size_t k = 0; k < this->Rounds.size(); ++k)

@@ -183,24 +183,47 @@ double excessKnot(const std::vector<double>& interior, int degree)
   return -1;
 }
 
+std::string checkSpans(const std::vector<double>& interior)
+{
+  for (std::size_t k = 0; k <= interior.size(); ++k)
+  {
+    const double from = k > 0 ? interior[k - 1] : 0.0;
+    const double to = k < interior.size() ? interior[k] : 1.0;
+    if (to != from && !(to - from >= BSplineBasis::SmallestSpan))
+    {
+      return text("The knots ", from, " and ", to, " are ", to - from,
+        " apart; they must be equal "
+        "or ",
+        BSplineBasis::SmallestSpan,
+        " apart at least. Insert knots farther apart, leave out data points "
+        "whose parameters are all but equal, or set fewer control points.");
+    }
+  }
+  return {};
+}
+
 std::string FairingRound::insertKnots()
 {
   for (std::size_t axis = 0; axis < 2; ++axis)
   {
-    const std::vector<double>& inserted = this->InsertedKnots[axis];
+    std::vector<double> inserted = this->InsertedKnots[axis];
     if (inserted.empty())
     {
       continue;
     }
     const BSplineBasis& basis = this->Spline.Axes[axis];
     std::vector<double> all = basis.interiorKnots();
-    all.insert(all.end(), inserted.begin(), inserted.end());
-    for (const double knot : inserted)
+    for (double& knot : inserted)
     {
       if (!(knot > 0 && knot < 1))
       {
         return text("The knot ", knot, " cannot be inserted; give knots between 0 and 1.");
       }
+      // What rounding makes of a knot is that knot.
+      const auto same = std::find_if(all.begin(), all.end(),
+        [&](double other) { return std::abs(other - knot) < BSplineBasis::SmallestSpan; });
+      knot = same != all.end() ? *same : knot;
+      all.push_back(knot);
     }
     std::sort(all.begin(), all.end());
     const double excess = excessKnot(all, basis.degree());
@@ -208,6 +231,11 @@ std::string FairingRound::insertKnots()
     {
       return text("The knot ", excess, " would be there more than ", basis.degree(),
         " times, the Degree, with those inserted. Insert it fewer times.");
+    }
+    const std::string refusal = checkSpans(all);
+    if (!refusal.empty())
+    {
+      return refusal;
     }
     const bool weights = this->ControlWeights.size() > 0, movable = this->Movable.size() > 0;
     Eigen::MatrixXd attached = Eigen::MatrixXd::Zero(this->Spline.size(), 2);
@@ -264,7 +292,8 @@ std::string FairingRound::chooseWeights(
     const FairingResult result = iterateFairing(system, fittingResiduals(plain, this->Data, 0),
       options, plain, [&](double) { return !progress || progress(0); });
     this->ChoiceUnfinished = result.Status == FairingStatus::NotConverged;
-    if (result.Status == FairingStatus::Singular || result.Status == FairingStatus::Diverged)
+    if (result.Status == FairingStatus::Singular || result.Status == FairingStatus::Diverged ||
+      result.Status == FairingStatus::NotFinite)
     {
       return "The curve or surface by which AutomaticFairing chooses cannot be computed: with "
              "FairingWeight alone its equations have no unique solution. Set a larger "
@@ -297,11 +326,16 @@ std::string FairingRound::chooseWeights(
 
 std::string FairingRound::run(const FairingParameters& p, const ProgressCallback& progress)
 {
-  std::string refusal = this->insertKnots();
-  if (refusal.empty())
+  std::string refusal;
+  for (const BSplineBasis& basis : this->Spline.Axes)
   {
-    refusal = this->chooseWeights(p, progress);
+    if (refusal.empty() && basis.degree() > 0)
+    {
+      refusal = checkSpans(basis.interiorKnots());
+    }
   }
+  refusal = refusal.empty() ? this->insertKnots() : refusal;
+  refusal = refusal.empty() ? this->chooseWeights(p, progress) : refusal;
   if (!refusal.empty())
   {
     return refusal;
@@ -325,14 +359,30 @@ std::string FairingRound::run(const FairingParameters& p, const ProgressCallback
   }
   if (this->Result.Status == FairingStatus::Singular)
   {
-    return "The equations have no unique solution: control points without data and without "
-           "fairing. "
-           "Set a FairingWeight above 0 or fewer control points, or take Solver "
-           "ProgressiveIteration.";
+    return text("The equations have no unique solution, for ", this->Weights.size(),
+      " control points, ", this->Data.Points.rows(), " data points and fairing weights from ",
+      this->Weights.minCoeff(), " to ", this->Weights.maxCoeff(),
+      ": control points have neither enough data nor fairing, or fairing alone. Set a "
+      "FairingWeight "
+      "above 0 and below 1 or fewer control points, or take Solver ProgressiveIteration.");
+  }
+  if (this->Result.Status == FairingStatus::NotFinite)
+  {
+    return text("The equations have values that are not finite, for an extent of the points of ",
+      this->Data.Points.cwiseAbs().maxCoeff(), ", control points up to ",
+      this->Spline.ControlPoints.cwiseAbs().maxCoeff(), " and ", this->Weights.size(),
+      " fairing weights. Scale the points, or insert knots farther apart.");
   }
   this->Residuals = fittingResiduals(this->Spline, this->Data, 0);
   this->FittingError = rootMeanSquare(this->Residuals);
   this->FairingEnergy = fairingEnergy(this->Spline, p.DerivativeOrder);
+  if (this->Result.Status != FairingStatus::Aborted &&
+    !(std::isfinite(this->FittingError) && std::isfinite(this->FairingEnergy)))
+  {
+    return text("The result is not finite: FittingError is ", this->FittingError,
+      " and FairingEnergy ", this->FairingEnergy,
+      ". Scale the points, set fewer control points, or a lower DerivativeOrder.");
+  }
   return {};
 }
 

@@ -137,6 +137,9 @@ std::string checkMemory(const std::vector<FairingRound>& rounds,
 /// True for an empty block of a composite that has points elsewhere.
 bool isEmptyBlock(vtkAlgorithm* filter, vtkDataSet* input);
 
+/// A message where knots are all but equal.
+std::string checkSpans(const std::vector<double>& interior);
+
 /// A message where a value of a weight array is not in [0, 1].
 std::string checkWeights(const Vector& weights, const std::string& name);
 
