@@ -8,8 +8,6 @@
 #include "vtkFairingPIAFilter.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkAlgorithmOutput.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -578,17 +576,6 @@ std::string checkMemory(const std::vector<FairingRound>& rounds,
       available / Gibibyte, " GiB. Reduce SampleDimensions or NumberOfControlPoints.");
   }
   return {};
-}
-
-bool isEmptyBlock(vtkAlgorithm* filter, vtkDataSet* input)
-{
-  vtkAlgorithmOutput* from =
-    filter->GetNumberOfInputConnections(0) > 0 ? filter->GetInputConnection(0, 0) : nullptr;
-  auto* composite = from
-    ? vtkCompositeDataSet::SafeDownCast(from->GetProducer()->GetOutputDataObject(from->GetIndex()))
-    : nullptr;
-  return composite && input && input->GetNumberOfPoints() == 0 &&
-    composite->GetNumberOfPoints() > 0;
 }
 
 std::string checkWeights(const Vector& weights, const std::string& name)

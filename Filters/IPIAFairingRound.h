@@ -134,9 +134,6 @@ std::string checkMovable(const Vector& movable);
 std::string checkMemory(const std::vector<FairingRound>& rounds,
   const FairingParameters& parameters, double samples, double bytesPerSample, vtkDataSet* input);
 
-/// True for an empty block of a composite that has points elsewhere.
-bool isEmptyBlock(vtkAlgorithm* filter, vtkDataSet* input);
-
 /// A message where knots are all but equal.
 std::string checkSpans(const std::vector<double>& interior);
 

@@ -268,12 +268,7 @@ double vtkFairingPIACurveFilter::GetInsertedKnot(int i)
 std::string vtkFairingPIACurveFilter::Fair(vtkInformationVector** input,
   vtkInformationVector* output, const ipia::FairingParameters& parameters)
 {
-  vtkPolyData* lines = vtkPolyData::GetData(input[0]);
-  if (ipia::isEmptyBlock(this, lines))
-  {
-    return {};
-  }
-  Curves curves(this, lines, vtkPolyData::GetData(input[1]));
+  Curves curves(this, vtkPolyData::GetData(input[0]), vtkPolyData::GetData(input[1]));
   std::string refusal = curves.read(parameters);
   refusal = refusal.empty() ? curves.checkMemory(parameters) : refusal;
   refusal = refusal.empty() ? curves.run(parameters) : refusal;

@@ -276,12 +276,7 @@ void vtkFairingPIASurfaceFilter::ClearInsertedKnots()
 std::string vtkFairingPIASurfaceFilter::Fair(vtkInformationVector** input,
   vtkInformationVector* output, const ipia::FairingParameters& parameters)
 {
-  vtkPointSet* points = vtkPointSet::GetData(input[0]);
-  if (ipia::isEmptyBlock(this, points))
-  {
-    return {};
-  }
-  Surface surface(this, points, vtkPolyData::GetData(input[1]));
+  Surface surface(this, vtkPointSet::GetData(input[0]), vtkPolyData::GetData(input[1]));
   std::string refusal = surface.read(parameters);
   refusal = refusal.empty() ? surface.checkMemory(parameters) : refusal;
   refusal = refusal.empty() ? surface.run(parameters) : refusal;
