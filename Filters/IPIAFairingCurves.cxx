@@ -14,8 +14,9 @@
 #include <algorithm>
 #include <cmath>
 
-void vtkFairingPIACurveFilter::Curves::readLines()
+std::string vtkFairingPIACurveFilter::Curves::readLines()
 {
+  const vtkIdType points = this->Input->GetNumberOfPoints();
   auto cell = vtkSmartPointer<vtkCellArrayIterator>::Take(this->Input->GetLines()->NewIterator());
   for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell())
   {
@@ -24,6 +25,14 @@ void vtkFairingPIACurveFilter::Curves::readLines()
     cell->GetCurrentCell(size, ids);
     Line line;
     line.Ids.assign(ids, ids + size);
+    for (const vtkIdType id : line.Ids)
+    {
+      if (id < 0 || id >= points)
+      {
+        return ipia::text("Line ", this->Lines.size(), " has a point ", id, "; the input has ",
+          points, " points, from 0 on. Correct the line.");
+      }
+    }
     bool returns = false;
     if (size > 2)
     {
@@ -40,6 +49,13 @@ void vtkFairingPIACurveFilter::Curves::readLines()
     }
     this->Lines.push_back(std::move(line));
   }
+  if (this->Lines.empty())
+  {
+    return "The input has no lines. Every curve is one polyline (vtkPolyData with lines); "
+           "vtkStripper "
+           "joins segments.";
+  }
+  return ipia::checkPointArrays(this->Input);
 }
 
 std::string vtkFairingPIACurveFilter::Curves::readPoints(std::size_t k)
@@ -62,7 +78,7 @@ std::string vtkFairingPIACurveFilter::Curves::readPoints(std::size_t k)
   }
   this->Rounds[k].setPoints(points);
   this->Rounds[k].GridSize = { points.rows(), 1 };
-  return {};
+  return ipia::checkExtent(points);
 }
 
 std::string vtkFairingPIACurveFilter::Curves::readParameters(std::size_t k, vtkDataArray* given)
@@ -117,12 +133,10 @@ std::string vtkFairingPIACurveFilter::Curves::readParameters(std::size_t k, vtkD
 
 std::string vtkFairingPIACurveFilter::Curves::readEarlierRound()
 {
-  const auto field = [&](const char* name)
-  { return this->Controls->GetFieldData()->GetArray(name); };
-  vtkDataArray *degree = field("Degree"), *knots = field("Knots"), *offsets = field("KnotOffsets"),
-               *closed = field("Closed");
+  vtkFieldData* field = this->Controls->GetFieldData();
+  vtkDataArray *offsets = field->GetArray("KnotOffsets"), *closed = field->GetArray("Closed");
   const auto curves = static_cast<vtkIdType>(this->Rounds.size());
-  if (!degree || !knots || !offsets || !closed || degree->GetNumberOfTuples() != 1)
+  if (!field->GetArray("Degree") || !field->GetArray("Knots") || !offsets || !closed)
   {
     return "The control points on port 1 lack the field data Degree, Closed, Knots and "
            "KnotOffsets. "
@@ -133,54 +147,57 @@ std::string vtkFairingPIACurveFilter::Curves::readEarlierRound()
     return ipia::text("The control points on port 1 are those of ", closed->GetNumberOfTuples(),
       " curves, the input has ", curves, " lines. Connect output 1 of a round on the same lines.");
   }
-  const int p = static_cast<int>(degree->GetComponent(0, 0));
-  if (p < 1 || p > ipia::BSplineBasis::MaximumDegree)
+  std::vector<bool> periodic;
+  for (vtkIdType k = 0; k < curves; ++k)
   {
-    return ipia::text(
-      "The Degree of the control points on port 1 is ", p, "; 1 to 5 are possible.");
+    periodic.push_back(ipia::fieldNumber(field, "Closed", k) == 1);
+    if (periodic.back() != this->Lines[static_cast<std::size_t>(k)].Closed)
+    {
+      return ipia::text("Curve ", k, " on port 1 is ", periodic.back() ? "closed" : "open",
+        ", line ", k, " is not. Set Closure as in the earlier round.");
+    }
   }
-  if (this->Filter->DerivativeOrder > p)
+  ipia::EarlierKnots knots;
+  std::string refusal = knots.read(field, this->Rounds.size(), periodic,
+    [](std::size_t k) { return "curve " + std::to_string(k); });
+  const int p = knots.Degree;
+  if (refusal.empty() && this->Filter->DerivativeOrder > p)
   {
     return ipia::text("DerivativeOrder is ", this->Filter->DerivativeOrder,
       " and the control points on port 1 are of degree ", p, ". Set a lower DerivativeOrder.");
   }
-  vtkDataArray* weights = this->Filter->GetInputArrayToProcess(1, this->Controls);
-  vtkDataArray* movable = this->Filter->GetInputArrayToProcess(2, this->Controls);
-  vtkIdType first = 0;
-  for (vtkIdType k = 0; k < curves; ++k)
+  if (!refusal.empty())
   {
-    ipia::FairingRound& round = this->Rounds[static_cast<std::size_t>(k)];
-    const auto begin = static_cast<vtkIdType>(offsets->GetComponent(k, 0));
-    const auto end = static_cast<vtkIdType>(offsets->GetComponent(k + 1, 0));
-    const bool periodic = closed->GetComponent(k, 0) != 0;
-    std::vector<double> interior;
-    for (vtkIdType i = begin + p + 1; i < std::min(end, knots->GetNumberOfTuples()) - p - 1; ++i)
-    {
-      interior.push_back(knots->GetComponent(i, 0));
-    }
-    if (begin < 0 || end > knots->GetNumberOfTuples() || end - begin < 2 * p + 2 ||
-      !std::is_sorted(interior.begin(), interior.end()) || ipia::excessKnot(interior, p) >= 0 ||
-      (periodic && static_cast<int>(interior.size()) < p))
-    {
-      return ipia::text("The knots of curve ", k, " on port 1 are not those of a curve of degree ",
-        p,
-        ": between 0 and 1 they must rise, none more than "
-        "Degree times. Connect output 1 of an earlier round.");
-    }
-    if (periodic != this->Lines[static_cast<std::size_t>(k)].Closed)
-    {
-      return ipia::text("Curve ", k, " on port 1 is ", periodic ? "closed" : "open", ", line ", k,
-        " is not. Set Closure as in the earlier round.");
-    }
-    round.Spline.Axes[0] = periodic ? ipia::BSplineBasis::periodic(p, interior)
-                                    : ipia::BSplineBasis::clamped(p, interior);
+    return refusal;
+  }
+  vtkIdType total = 0;
+  for (std::size_t k = 0; k < this->Rounds.size(); ++k)
+  {
+    ipia::BSplineBasis& basis = this->Rounds[k].Spline.Axes[0];
+    basis = periodic[k] ? ipia::BSplineBasis::periodic(p, knots.Interior[k])
+                        : ipia::BSplineBasis::clamped(p, knots.Interior[k]);
+    total += basis.size();
+  }
+  if (total != this->Controls->GetNumberOfPoints())
+  {
+    return ipia::text("The knots on port 1 ask for ", total, " control points, ",
+      this->Controls->GetNumberOfPoints(), " are there. Connect output 1 of an earlier round.");
+  }
+  vtkDataArray *weights = nullptr, *movable = nullptr;
+  refusal = ipia::chooseArray(
+    this->Filter, 1, this->Controls, 1, "fairing weights of control points", weights);
+  refusal = refusal.empty()
+    ? ipia::chooseArray(this->Filter, 2, this->Controls, 1, "control points that may move", movable)
+    : refusal;
+  if (!refusal.empty())
+  {
+    return refusal;
+  }
+  vtkIdType first = 0;
+  for (std::size_t k = 0; k < this->Rounds.size(); ++k)
+  {
+    ipia::FairingRound& round = this->Rounds[k];
     const std::int64_t n = round.Spline.size();
-    if (first + n > this->Controls->GetNumberOfPoints())
-    {
-      return ipia::text("The knots on port 1 ask for more control points than the ",
-        this->Controls->GetNumberOfPoints(),
-        " that are there. Connect output 1 of an earlier round.");
-    }
     round.Spline.ControlPoints.resize(n, 3);
     round.ControlWeights.resize(weights ? n : 0);
     round.Movable.resize(movable ? n : 0);
@@ -201,11 +218,12 @@ std::string vtkFairingPIACurveFilter::Curves::readEarlierRound()
         round.Movable[j] = movable->GetComponent(first + j, 0);
       }
     }
-    if (!round.Spline.ControlPoints.allFinite())
+    refusal =
+      ipia::checkControlPoints(round.Spline.ControlPoints, " of curve " + std::to_string(k));
+    refusal = refusal.empty() ? ipia::checkMovable(round.Movable) : refusal;
+    if (!refusal.empty())
     {
-      return ipia::text("A control point of curve ", k,
-        " on port 1 is not finite. Remove the cause, or "
-        "begin without port 1.");
+      return refusal;
     }
     first += n;
   }
@@ -241,39 +259,37 @@ std::string vtkFairingPIACurveFilter::Curves::start(
 
 std::string vtkFairingPIACurveFilter::Curves::read(const ipia::FairingParameters& parameters)
 {
-  this->readLines();
-  if (this->Lines.empty())
+  if (!this->Input || this->Input->GetNumberOfPoints() == 0)
   {
-    return "The input has no lines. Every curve is one polyline (vtkPolyData with lines); "
-           "vtkStripper "
-           "joins segments.";
+    return "The input has 0 points. Give a vtkPolyData with points and lines.";
+  }
+  std::string refusal = this->readLines();
+  if (!refusal.empty())
+  {
+    return refusal;
   }
   vtkDataArray* given = nullptr;
   if (this->Filter->Parametrization == Given)
   {
-    given = this->Filter->GetInputArrayToProcess(3, this->Input);
-    if (!given || given->GetNumberOfComponents() != 1)
+    refusal = ipia::chooseArray(this->Filter, 3, this->Input, 1, "parameters", given);
+    if (refusal.empty() && !given)
     {
-      return ipia::text("Parametrization is Given, but ",
-        given ? "the array of parameters has " + std::to_string(given->GetNumberOfComponents()) +
-            " components."
-              : std::string("there is no array of parameters."),
-        " Choose a point array of one component with SetInputArrayToProcess(3, 0, ...).");
+      refusal =
+        "Parametrization is Given, but there is no array of parameters. Choose a point array of "
+        "one component with SetInputArrayToProcess(3, 0, ...).";
     }
   }
-  vtkDataArray* weights = this->Filter->GetInputArrayToProcess(0, this->Input);
-  if (weights && weights->GetNumberOfComponents() != 1)
+  vtkDataArray* weights = nullptr;
+  refusal = refusal.empty()
+    ? ipia::chooseArray(this->Filter, 0, this->Input, 1, "fairing weights", weights)
+    : refusal;
+  if (refusal.empty() && weights)
   {
-    return ipia::text("The fairing weights have ", weights->GetNumberOfComponents(),
-      " components. Choose a point array of one component with SetInputArrayToProcess(0, 0, ...).");
+    refusal = ipia::checkWeights(ipia::toVector(weights), ipia::nameOf(weights));
   }
-  if (weights)
+  if (!refusal.empty())
   {
-    const std::string refusal = ipia::checkWeights(ipia::toVector(weights), ipia::nameOf(weights));
-    if (!refusal.empty())
-    {
-      return refusal;
-    }
+    return refusal;
   }
   this->Rounds.resize(this->Lines.size());
   for (std::size_t k = 0; k < this->Lines.size(); ++k)
@@ -286,7 +302,7 @@ std::string vtkFairingPIACurveFilter::Curves::read(const ipia::FairingParameters
         " different points; a curve of degree ", parameters.Degree, " needs ", least,
         " at least. Give more points or set a lower Degree.");
     }
-    std::string refusal = this->readPoints(k);
+    refusal = this->readPoints(k);
     refusal = refusal.empty() ? this->readParameters(k, given) : refusal;
     if (!refusal.empty())
     {
@@ -303,9 +319,9 @@ std::string vtkFairingPIACurveFilter::Curves::read(const ipia::FairingParameters
     }
     this->Rounds[k].InsertedKnots[0] = this->Filter->InsertedKnots;
   }
-  if (this->Controls && this->Controls->GetNumberOfPoints() > 0)
+  if (this->Controls)
   {
-    std::string refusal = this->readEarlierRound();
+    refusal = this->readEarlierRound();
     for (std::size_t k = 0; refusal.empty() && k < this->Rounds.size(); ++k)
     {
       refusal = ipia::checkWeights(this->Rounds[k].ControlWeights,
@@ -315,7 +331,7 @@ std::string vtkFairingPIACurveFilter::Curves::read(const ipia::FairingParameters
   }
   for (std::size_t k = 0; k < this->Lines.size(); ++k)
   {
-    const std::string refusal = this->start(k, parameters);
+    refusal = this->start(k, parameters);
     if (!refusal.empty())
     {
       return refusal;

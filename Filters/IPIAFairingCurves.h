@@ -26,6 +26,8 @@ public:
   }
 
   std::string read(const ipia::FairingParameters& parameters);
+  /// Why the samples would not fit into memory, or nothing.
+  std::string checkMemory(const ipia::FairingParameters& parameters) const;
   std::string run(const ipia::FairingParameters& parameters);
   void writeData(vtkPolyData* output) const;
   void writeControls(vtkPolyData* output) const;
@@ -40,7 +42,8 @@ private:
     bool Closed = false;
   };
 
-  void readLines();
+  std::string readLines();
+  vtkIdType sampleCount(const ipia::FairingRound& round) const;
   std::string readPoints(std::size_t k);
   std::string readParameters(std::size_t k, vtkDataArray* given);
   std::string readEarlierRound();

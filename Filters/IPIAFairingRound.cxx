@@ -3,28 +3,40 @@
 
 #include "Core/AutomaticFairing.h"
 #include "Core/Parametrization.h"
-#include "IPIAFitProblem.h"
+#include "IPIAMemory.h"
 #include "IPIAText.h"
 #include "vtkFairingPIAFilter.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ipia
 {
 namespace
 {
-/// A sample's own arrays and cells.
-constexpr double BytesPerSample = 160;
+/// Of SetInputArrayToProcess; the array that has a default.
+constexpr int ControlWeightsIndex = 1;
+
+/// Extents outside of it, cubed and divided by, leave the range of double.
+constexpr double LargestExtent = 1e100, SmallestExtent = 1e-100;
+
+/// Bytes that a fit needs per data point, and per control point with all that its iteration keeps.
+constexpr double BytesPerDataPoint = 200, BytesPerControlPoint = 800;
+/// And per entry of a matrix that is factorised, with its share of the factors for each doubling of
+/// the number of control points.
+constexpr double BytesPerEntry = 56, BytesPerFactorEntry = 12;
 
 bool isWeight(double value)
 {
@@ -170,24 +182,47 @@ double excessKnot(const std::vector<double>& interior, int degree)
   return -1;
 }
 
+std::string checkSpans(const std::vector<double>& interior)
+{
+  for (std::size_t k = 0; k <= interior.size(); ++k)
+  {
+    const double from = k > 0 ? interior[k - 1] : 0.0;
+    const double to = k < interior.size() ? interior[k] : 1.0;
+    if (to != from && !(to - from >= BSplineBasis::SmallestSpan))
+    {
+      return text("The knots ", from, " and ", to, " are ", to - from,
+        " apart; they must be equal "
+        "or ",
+        BSplineBasis::SmallestSpan,
+        " apart at least. Insert knots farther apart, leave out data points "
+        "whose parameters are all but equal, or set fewer control points.");
+    }
+  }
+  return {};
+}
+
 std::string FairingRound::insertKnots()
 {
   for (std::size_t axis = 0; axis < 2; ++axis)
   {
-    const std::vector<double>& inserted = this->InsertedKnots[axis];
+    std::vector<double> inserted = this->InsertedKnots[axis];
     if (inserted.empty())
     {
       continue;
     }
     const BSplineBasis& basis = this->Spline.Axes[axis];
     std::vector<double> all = basis.interiorKnots();
-    all.insert(all.end(), inserted.begin(), inserted.end());
-    for (const double knot : inserted)
+    for (double& knot : inserted)
     {
       if (!(knot > 0 && knot < 1))
       {
         return text("The knot ", knot, " cannot be inserted; give knots between 0 and 1.");
       }
+      // What rounding makes of a knot is that knot.
+      const auto same = std::find_if(all.begin(), all.end(),
+        [&](double other) { return std::abs(other - knot) < BSplineBasis::SmallestSpan; });
+      knot = same != all.end() ? *same : knot;
+      all.push_back(knot);
     }
     std::sort(all.begin(), all.end());
     const double excess = excessKnot(all, basis.degree());
@@ -195,6 +230,11 @@ std::string FairingRound::insertKnots()
     {
       return text("The knot ", excess, " would be there more than ", basis.degree(),
         " times, the Degree, with those inserted. Insert it fewer times.");
+    }
+    const std::string refusal = checkSpans(all);
+    if (!refusal.empty())
+    {
+      return refusal;
     }
     const bool weights = this->ControlWeights.size() > 0, movable = this->Movable.size() > 0;
     Eigen::MatrixXd attached = Eigen::MatrixXd::Zero(this->Spline.size(), 2);
@@ -251,7 +291,8 @@ std::string FairingRound::chooseWeights(
     const FairingResult result = iterateFairing(system, fittingResiduals(plain, this->Data, 0),
       options, plain, [&](double) { return !progress || progress(0); });
     this->ChoiceUnfinished = result.Status == FairingStatus::NotConverged;
-    if (result.Status == FairingStatus::Singular || result.Status == FairingStatus::Diverged)
+    if (result.Status == FairingStatus::Singular || result.Status == FairingStatus::Diverged ||
+      result.Status == FairingStatus::NotFinite)
     {
       return "The curve or surface by which AutomaticFairing chooses cannot be computed: with "
              "FairingWeight alone its equations have no unique solution. Set a larger "
@@ -284,11 +325,16 @@ std::string FairingRound::chooseWeights(
 
 std::string FairingRound::run(const FairingParameters& p, const ProgressCallback& progress)
 {
-  std::string refusal = this->insertKnots();
-  if (refusal.empty())
+  std::string refusal;
+  for (const BSplineBasis& basis : this->Spline.Axes)
   {
-    refusal = this->chooseWeights(p, progress);
+    if (refusal.empty() && basis.degree() > 0)
+    {
+      refusal = checkSpans(basis.interiorKnots());
+    }
   }
+  refusal = refusal.empty() ? this->insertKnots() : refusal;
+  refusal = refusal.empty() ? this->chooseWeights(p, progress) : refusal;
   if (!refusal.empty())
   {
     return refusal;
@@ -312,14 +358,224 @@ std::string FairingRound::run(const FairingParameters& p, const ProgressCallback
   }
   if (this->Result.Status == FairingStatus::Singular)
   {
-    return "The equations have no unique solution: control points without data and without "
-           "fairing. "
-           "Set a FairingWeight above 0 or fewer control points, or take Solver "
-           "ProgressiveIteration.";
+    return text("The equations have no unique solution, for ", this->Weights.size(),
+      " control points, ", this->Data.Points.rows(), " data points and fairing weights from ",
+      this->Weights.minCoeff(), " to ", this->Weights.maxCoeff(),
+      ": control points have neither enough data nor fairing, or fairing alone. Set a "
+      "FairingWeight "
+      "above 0 and below 1 or fewer control points, or take Solver ProgressiveIteration.");
+  }
+  if (this->Result.Status == FairingStatus::NotFinite)
+  {
+    return text("The equations have values that are not finite, for an extent of the points of ",
+      this->Data.Points.cwiseAbs().maxCoeff(), ", control points up to ",
+      this->Spline.ControlPoints.cwiseAbs().maxCoeff(), " and ", this->Weights.size(),
+      " fairing weights. Scale the points, or insert knots farther apart.");
   }
   this->Residuals = fittingResiduals(this->Spline, this->Data, 0);
   this->FittingError = rootMeanSquare(this->Residuals);
   this->FairingEnergy = fairingEnergy(this->Spline, p.DerivativeOrder);
+  if (this->Result.Status != FairingStatus::Aborted &&
+    !(std::isfinite(this->FittingError) && std::isfinite(this->FairingEnergy)))
+  {
+    return text("The result is not finite: FittingError is ", this->FittingError,
+      " and FairingEnergy ", this->FairingEnergy,
+      ". Scale the points, set fewer control points, or a lower DerivativeOrder.");
+  }
+  return {};
+}
+
+double fieldNumber(vtkFieldData* field, const char* name, vtkIdType tuple)
+{
+  vtkDataArray* array = field->GetArray(name);
+  return array && array->GetNumberOfComponents() == 1 && tuple >= 0 &&
+      tuple < array->GetNumberOfTuples()
+    ? array->GetComponent(tuple, 0)
+    : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string EarlierKnots::read(vtkFieldData* field, std::size_t count,
+  const std::vector<bool>& periodic, const std::function<std::string(std::size_t)>& name)
+{
+  const double degree = fieldNumber(field, "Degree", 0);
+  if (!(degree >= 1 && degree <= BSplineBasis::MaximumDegree))
+  {
+    return text("The Degree of the control points on port 1 is ", degree, "; 1 to 5 are possible.");
+  }
+  this->Degree = static_cast<int>(degree);
+  const int p = this->Degree;
+  vtkDataArray* knots = field->GetArray("Knots");
+  const auto tuples = static_cast<double>(knots ? knots->GetNumberOfTuples() : 0);
+  this->Interior.assign(count, {});
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const auto tuple = static_cast<vtkIdType>(k);
+    const double begin = fieldNumber(field, "KnotOffsets", tuple);
+    const double end = fieldNumber(field, "KnotOffsets", tuple + 1);
+    if (!(begin >= 0 && end >= begin && end <= tuples))
+    {
+      return text("The KnotOffsets on port 1 go from ", begin, " to ", end, " for ", name(k),
+        ", and there are ", tuples, " Knots. Connect output 1 of an earlier round.");
+    }
+    std::vector<double>& interior = this->Interior[k];
+    const auto last = static_cast<vtkIdType>(end) - p - 1;
+    for (vtkIdType i = static_cast<vtkIdType>(begin) + p + 1; i < last; ++i)
+    {
+      interior.push_back(fieldNumber(field, "Knots", i));
+    }
+    const auto isInside = [](double knot) { return knot > 0 && knot < 1; };
+    if (end - begin < 2 * p + 2 || !std::all_of(interior.begin(), interior.end(), isInside) ||
+      !std::is_sorted(interior.begin(), interior.end()) || excessKnot(interior, p) >= 0 ||
+      (periodic[k] && static_cast<int>(interior.size()) < p))
+    {
+      return text("The knots of ", name(k), " on port 1 are not those of degree ", p,
+        ": between 0 and 1 they must rise, none more than Degree times. Connect output 1 of an "
+        "earlier round.");
+    }
+  }
+  return {};
+}
+
+std::string chooseArray(vtkAlgorithm* filter, int index, vtkDataSet* input, int components,
+  const std::string& what, vtkDataArray*& array)
+{
+  array = nullptr;
+  vtkInformation* chosen = filter->GetInputArrayInformation(index);
+  vtkPointData* points = input->GetPointData();
+  const char* name = chosen->Get(vtkDataObject::FIELD_NAME());
+  const bool byAttribute = !name && chosen->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
+  vtkAbstractArray* found = name ? points->GetAbstractArray(name)
+    : byAttribute ? points->GetAbstractAttribute(chosen->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
+                  : nullptr;
+  const std::string given = name ? name : "";
+  const int association = chosen->Get(vtkDataObject::FIELD_ASSOCIATION());
+  const bool ofPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS ||
+    association == vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS;
+  const bool isDefault = index == ControlWeightsIndex && given == "FairingWeight";
+  if ((!name && !byAttribute) ||
+    (ofPoints && !found && (byAttribute || isDefault || given.empty() || given == "None")))
+  {
+    return {};
+  }
+  const std::string remedy =
+    text(" Choose a point array of ", components, components == 1 ? " component" : " components",
+      " and one tuple per point with SetInputArrayToProcess(", index, ", ...), or none by \"\".");
+  if (!ofPoints || !found)
+  {
+    return text("The array of ", what, ", \"", given, "\", is not ",
+      ofPoints ? "there." : "one of points.", remedy);
+  }
+  array = vtkDataArray::SafeDownCast(found);
+  const std::string title = found->GetName() ? found->GetName() : "";
+  if (!array)
+  {
+    return text("The array of ", what, ", \"", title, "\", is a ", found->GetClassName(),
+      " and holds no numbers.", remedy);
+  }
+  if (array->GetNumberOfComponents() != components ||
+    array->GetNumberOfTuples() != input->GetNumberOfPoints())
+  {
+    return text("The array of ", what, ", \"", title, "\", has ", array->GetNumberOfComponents(),
+      " components and ", array->GetNumberOfTuples(), " tuples for ", input->GetNumberOfPoints(),
+      " points.", remedy);
+  }
+  return {};
+}
+
+std::string checkPointArrays(vtkDataSet* input)
+{
+  vtkPointData* data = input->GetPointData();
+  for (int k = 0; k < data->GetNumberOfArrays(); ++k)
+  {
+    vtkAbstractArray* array = data->GetAbstractArray(k);
+    if (array->GetNumberOfTuples() != input->GetNumberOfPoints())
+    {
+      return text("The point array \"", array->GetName() ? array->GetName() : "", "\" has ",
+        array->GetNumberOfTuples(), " tuples for ", input->GetNumberOfPoints(),
+        " points. Give it one tuple per point, or remove it.");
+    }
+  }
+  return {};
+}
+
+std::string checkExtent(const Eigen::MatrixXd& points)
+{
+  double extent = 0, largest = 0;
+  for (Eigen::Index c = 0; c < points.cols(); ++c)
+  {
+    extent = std::max(extent, points.col(c).maxCoeff() - points.col(c).minCoeff());
+    largest = std::max(largest, points.col(c).cwiseAbs().maxCoeff());
+  }
+  if (extent > LargestExtent || (extent > 0 && extent < SmallestExtent) ||
+    largest > std::numeric_limits<double>::max() / 4)
+  {
+    return text("The points have an extent of ", extent, " and coordinates up to ", largest,
+      "; extents from ", SmallestExtent, " to ", LargestExtent,
+      " can be computed with. Scale the points.");
+  }
+  return {};
+}
+
+std::string checkControlPoints(const Eigen::MatrixXd& points, const std::string& name)
+{
+  for (Eigen::Index j = 0; j < points.rows(); ++j)
+  {
+    if (!points.row(j).allFinite() || points.row(j).cwiseAbs().maxCoeff() > LargestExtent)
+    {
+      return text("Control point ", j, name,
+        " on port 1 is not finite or too far from the data: ", triple(points.row(j).eval().data()),
+        " from their centre. Remove the cause, or begin without port 1.");
+    }
+  }
+  return {};
+}
+
+std::string checkMovable(const Vector& movable)
+{
+  for (Eigen::Index j = 0; j < movable.size(); ++j)
+  {
+    if (!std::isfinite(movable[j]))
+    {
+      return text("Value ", j, " of the control points that may move is ", movable[j],
+        "; 0 keeps a control point, other finite values let it move. Correct it.");
+    }
+  }
+  return {};
+}
+
+std::string checkMemory(const std::vector<FairingRound>& rounds,
+  const FairingParameters& parameters, double samples, double bytesPerSample, vtkDataSet* input)
+{
+  double bytesOfArrays = 0;
+  vtkPointData* data = input->GetPointData();
+  for (int k = 0; k < data->GetNumberOfArrays(); ++k)
+  {
+    const vtkAbstractArray* array = data->GetAbstractArray(k);
+    bytesOfArrays += double(array->GetNumberOfComponents()) * array->GetDataTypeSize();
+  }
+  double needed = samples * (bytesPerSample + bytesOfArrays), controls = 0, points = 0;
+  for (const FairingRound& round : rounds)
+  {
+    const auto n = static_cast<double>(round.Spline.size());
+    const auto m = static_cast<double>(round.Data.Points.rows());
+    const double entries =
+      (2. * round.Spline.Axes[0].degree() + 1) * (2. * round.Spline.Axes[1].degree() + 1);
+    needed += m * (BytesPerDataPoint + bytesOfArrays) + n * BytesPerControlPoint +
+      (round.Data.Gridded ? 0 : n * entries * 8);
+    if (parameters.Options.Solver == FairingSolver::SparseDirect)
+    {
+      needed += n * entries * (BytesPerEntry + BytesPerFactorEntry * std::log2(n + 1));
+    }
+    controls += n;
+    points += m;
+  }
+  const double available = memoryOfMachine();
+  if (needed > MemoryShare * available)
+  {
+    return text("The fit would take about ", needed / Gibibyte, " GiB of memory (", controls,
+      " control points, ", points, " data points, ", samples, " samples); the machine has ",
+      available / Gibibyte, " GiB. Reduce SampleDimensions or NumberOfControlPoints.");
+  }
   return {};
 }
 
@@ -339,20 +595,6 @@ std::string checkWeights(const Vector& weights, const std::string& name)
 std::string nameOf(vtkDataArray* array)
 {
   return array && array->GetName() ? array->GetName() : "";
-}
-
-std::string checkSamples(double samples, vtkDataSet* data)
-{
-  const double needed =
-    samples * (BytesPerSample + sizeof(double) * data->GetPointData()->GetNumberOfComponents());
-  const double available = memoryOfMachine();
-  if (needed > MemoryShare * available)
-  {
-    constexpr double gibibyte = 1073741824;
-    return text("The samples would take about ", needed / gibibyte,
-      " GiB of memory; the machine has ", available / gibibyte, " GiB. Reduce SampleDimensions.");
-  }
-  return {};
 }
 
 Vector toVector(vtkDataArray* array)

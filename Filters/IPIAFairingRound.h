@@ -8,10 +8,14 @@
 
 #include "Core/FairingIteration.h"
 
+#include "vtkType.h"
+
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
+class vtkAlgorithm;
 class vtkDataArray;
 class vtkDataSet;
 class vtkDoubleArray;
@@ -84,15 +88,60 @@ private:
 /// -1.
 double excessKnot(const std::vector<double>& interior, int degree);
 
+/// The degree and the knots of an earlier round.
+struct EarlierKnots
+{
+  int Degree = 0;
+  /// Those inside (0, 1), per curve or axis.
+  std::vector<std::vector<double>> Interior;
+
+  /**
+   * Reads and checks the field data of control points.
+   * @param count     of curves or axes
+   * @param periodic  of each
+   * @param name      of one of them, for messages
+   * Returns why they cannot be used, or nothing.
+   */
+  std::string read(vtkFieldData* field, std::size_t count, const std::vector<bool>& periodic,
+    const std::function<std::string(std::size_t)>& name);
+};
+
+/// The number of one component and tuple that field data has under a name, or NaN.
+double fieldNumber(vtkFieldData* field, const char* name, vtkIdType tuple);
+
+/**
+ * The point array that the user has chosen with SetInputArrayToProcess, or none: where nothing was
+ * chosen, by the names "" and "None", and where a default is not there.
+ * @param what  it is the array of, for messages
+ * Returns why it cannot be used, or nothing.
+ */
+std::string chooseArray(vtkAlgorithm* filter, int index, vtkDataSet* input, int components,
+  const std::string& what, vtkDataArray*& array);
+
+/// A message where a point array has not one tuple per point.
+std::string checkPointArrays(vtkDataSet* input);
+
+/// A message where the points have an extent with whose powers one cannot compute.
+std::string checkExtent(const Eigen::MatrixXd& points);
+
+/// A message where control points are not finite, or as far from the data as checkExtent() refuses.
+std::string checkControlPoints(const Eigen::MatrixXd& points, const std::string& name);
+
+/// A message where a value that tells which control points move is not finite.
+std::string checkMovable(const Vector& movable);
+
+/// A message where the fit and its samples would not fit into the memory of the machine.
+std::string checkMemory(const std::vector<FairingRound>& rounds,
+  const FairingParameters& parameters, double samples, double bytesPerSample, vtkDataSet* input);
+
+/// A message where knots are all but equal.
+std::string checkSpans(const std::vector<double>& interior);
+
 /// A message where a value of a weight array is not in [0, 1].
 std::string checkWeights(const Vector& weights, const std::string& name);
 
 /// The name of an array, or nothing.
 std::string nameOf(vtkDataArray* array);
-
-/// A message where so many samples with the arrays of the data are more than the machine's memory
-/// would hold.
-std::string checkSamples(double samples, vtkDataSet* data);
 
 /// The first component of an array.
 Vector toVector(vtkDataArray* array);

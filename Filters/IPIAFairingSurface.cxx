@@ -20,6 +20,22 @@ constexpr std::int64_t MostControlPointsPerPoint = 4;
 constexpr const char* AxisNames[] = { "u", "v" };
 }
 
+std::string vtkFairingPIASurfaceFilter::Surface::checkGrid()
+{
+  if (auto* grid = vtkStructuredGrid::SafeDownCast(this->Input))
+  {
+    int size[3];
+    grid->GetDimensions(size);
+    const double points = double(size[0]) * size[1] * size[2];
+    if (points != static_cast<double>(grid->GetNumberOfPoints()))
+    {
+      return ipia::text("The grid has dimensions ", ipia::triple(size), " and ",
+        grid->GetNumberOfPoints(), " points. Set the dimensions that its points have.");
+    }
+  }
+  return ipia::checkPointArrays(this->Input);
+}
+
 std::string vtkFairingPIASurfaceFilter::Surface::readGridSize()
 {
   auto* grid = vtkStructuredGrid::SafeDownCast(this->Input);
@@ -70,19 +86,22 @@ std::string vtkFairingPIASurfaceFilter::Surface::readPoints()
   {
     return ipia::text("All ", m, " points are equal; a surface needs extent. Give other points.");
   }
-  return {};
+  return ipia::checkExtent(points);
 }
 
 std::string vtkFairingPIASurfaceFilter::Surface::readGivenParameters()
 {
-  vtkDataArray* given = this->Filter->GetInputArrayToProcess(3, this->Input);
-  if (!given || given->GetNumberOfComponents() != 2)
+  vtkDataArray* given = nullptr;
+  const std::string refusal =
+    ipia::chooseArray(this->Filter, 3, this->Input, 2, "parameters", given);
+  if (!refusal.empty())
   {
-    return ipia::text("Parametrization is Given, but ",
-      given ? "the array of parameters has " + std::to_string(given->GetNumberOfComponents()) +
-          " component(s)."
-            : std::string("there is no array of parameters."),
-      " Choose a point array of two components with SetInputArrayToProcess(3, 0, ...).");
+    return refusal;
+  }
+  if (!given)
+  {
+    return "Parametrization is Given, but there is no array of parameters. Choose a point array of "
+           "two components with SetInputArrayToProcess(3, 0, ...).";
   }
   ipia::FairingData& data = this->round().Data;
   data.Gridded = false;
@@ -145,6 +164,7 @@ std::string vtkFairingPIASurfaceFilter::Surface::start(int degree)
   ipia::FairingRound& round = this->round();
   const bool gridded = round.Data.Gridded;
   const double root = std::sqrt(static_cast<double>(round.Data.Points.rows()));
+  std::int64_t sizes[2];
   for (const std::size_t axis : { 0u, 1u })
   {
     const std::int64_t least = degree + 1;
@@ -165,21 +185,18 @@ std::string vtkFairingPIASurfaceFilter::Surface::start(int degree)
         gridded ? ipia::text(" on a grid of ", most, " points it can be ", least, " to ", most, ".")
                 : ipia::text(" it must be ", least, " at least."));
     }
-    // Before knots of any number are made.
-    if (!gridded && n > MostControlPointsPerPoint * round.Data.Points.rows())
-    {
-      return ipia::text("NumberOfControlPoints along ", AxisNames[axis], " is ", n, ", more than ",
-        MostControlPointsPerPoint, " times the ", round.Data.Points.rows(), " points. Set fewer.");
-    }
-    round.Spline.Axes[axis] = gridded
-      ? ipia::averagedKnots(round.Data.Parameters[axis], degree, n, false)
-      : ipia::uniformKnots(degree, n, false);
+    sizes[axis] = n;
   }
-  if (!gridded && round.Spline.size() > MostControlPointsPerPoint * round.Data.Points.rows())
+  if (!gridded && sizes[0] * sizes[1] > MostControlPointsPerPoint * round.Data.Points.rows())
   {
-    return ipia::text("NumberOfControlPoints is (", round.Spline.Axes[0].size(), ", ",
-      round.Spline.Axes[1].size(), "), more than ", MostControlPointsPerPoint, " times the ",
-      round.Data.Points.rows(), " points. Set fewer.");
+    return ipia::text("NumberOfControlPoints is (", sizes[0], ", ", sizes[1], "), more than ",
+      MostControlPointsPerPoint, " times the ", round.Data.Points.rows(), " points. Set fewer.");
+  }
+  for (const std::size_t axis : { 0u, 1u })
+  {
+    round.Spline.Axes[axis] = gridded
+      ? ipia::averagedKnots(round.Data.Parameters[axis], degree, sizes[axis], false)
+      : ipia::uniformKnots(degree, sizes[axis], false);
   }
   if (gridded)
   {
@@ -194,42 +211,31 @@ std::string vtkFairingPIASurfaceFilter::Surface::start(int degree)
 
 std::string vtkFairingPIASurfaceFilter::Surface::readEarlierRound()
 {
-  const auto field = [&](const char* name)
-  { return this->Controls->GetFieldData()->GetArray(name); };
-  vtkDataArray *degree = field("Degree"), *knots = field("Knots"), *offsets = field("KnotOffsets");
-  if (!degree || !knots || !offsets || degree->GetNumberOfTuples() != 1 ||
+  vtkFieldData* field = this->Controls->GetFieldData();
+  vtkDataArray* offsets = field->GetArray("KnotOffsets");
+  if (!field->GetArray("Degree") || !field->GetArray("Knots") || !offsets ||
     offsets->GetNumberOfTuples() != 3)
   {
     return "The control points on port 1 lack the field data Degree, Knots and KnotOffsets of a "
            "surface. Connect output 1 of an earlier round.";
   }
-  const int p = static_cast<int>(degree->GetComponent(0, 0));
-  if (p < 1 || p > ipia::BSplineBasis::MaximumDegree || this->Filter->DerivativeOrder > p)
+  ipia::EarlierKnots knots;
+  std::string refusal = knots.read(field, 2, { false, false },
+    [](std::size_t axis) { return std::string("axis ") + AxisNames[axis]; });
+  const int p = knots.Degree;
+  if (refusal.empty() && this->Filter->DerivativeOrder > p)
   {
-    return ipia::text("The Degree of the control points on port 1 is ", p,
-      "; 1 to 5 are possible, and "
-      "DerivativeOrder (",
-      this->Filter->DerivativeOrder, ") must not be higher.");
+    return ipia::text("DerivativeOrder is ", this->Filter->DerivativeOrder,
+      " and the control points on port 1 are of degree ", p, ". Set a lower DerivativeOrder.");
+  }
+  if (!refusal.empty())
+  {
+    return refusal;
   }
   ipia::FairingRound& round = this->round();
-  for (const int axis : { 0, 1 })
+  for (const std::size_t axis : { 0u, 1u })
   {
-    const auto begin = static_cast<vtkIdType>(offsets->GetComponent(axis, 0));
-    const auto end = static_cast<vtkIdType>(offsets->GetComponent(axis + 1, 0));
-    std::vector<double> interior;
-    for (vtkIdType i = begin + p + 1; i < std::min(end, knots->GetNumberOfTuples()) - p - 1; ++i)
-    {
-      interior.push_back(knots->GetComponent(i, 0));
-    }
-    if (begin < 0 || end > knots->GetNumberOfTuples() || end - begin < 2 * p + 2 ||
-      !std::is_sorted(interior.begin(), interior.end()) || ipia::excessKnot(interior, p) >= 0)
-    {
-      return ipia::text("The knots along ", AxisNames[axis], " on port 1 are not those of degree ",
-        p,
-        ": between 0 and 1 they must rise, none more than Degree times. Connect output 1 of an "
-        "earlier round.");
-    }
-    round.Spline.Axes[static_cast<std::size_t>(axis)] = ipia::BSplineBasis::clamped(p, interior);
+    round.Spline.Axes[axis] = ipia::BSplineBasis::clamped(p, knots.Interior[axis]);
   }
   const std::int64_t n = round.Spline.size();
   if (this->Controls->GetNumberOfPoints() != n)
@@ -237,8 +243,16 @@ std::string vtkFairingPIASurfaceFilter::Surface::readEarlierRound()
     return ipia::text("The knots on port 1 ask for ", n, " control points, ",
       this->Controls->GetNumberOfPoints(), " are there. Connect output 1 of an earlier round.");
   }
-  vtkDataArray* weights = this->Filter->GetInputArrayToProcess(1, this->Controls);
-  vtkDataArray* movable = this->Filter->GetInputArrayToProcess(2, this->Controls);
+  vtkDataArray *weights = nullptr, *movable = nullptr;
+  refusal = ipia::chooseArray(
+    this->Filter, 1, this->Controls, 1, "fairing weights of control points", weights);
+  refusal = refusal.empty()
+    ? ipia::chooseArray(this->Filter, 2, this->Controls, 1, "control points that may move", movable)
+    : refusal;
+  if (!refusal.empty())
+  {
+    return refusal;
+  }
   round.Spline.ControlPoints.resize(n, 3);
   for (std::int64_t j = 0; j < n; ++j)
   {
@@ -249,13 +263,12 @@ std::string vtkFairingPIASurfaceFilter::Surface::readEarlierRound()
       round.Spline.ControlPoints(j, c) = x[c] - round.Centre[c];
     }
   }
-  if (!round.Spline.ControlPoints.allFinite())
-  {
-    return "A control point on port 1 is not finite. Remove the cause, or begin without port 1.";
-  }
   round.ControlWeights = weights ? ipia::toVector(weights) : ipia::Vector();
   round.Movable = movable ? ipia::toVector(movable) : ipia::Vector();
-  return ipia::checkWeights(round.ControlWeights, ipia::nameOf(weights));
+  refusal = ipia::checkControlPoints(round.Spline.ControlPoints, "");
+  refusal = refusal.empty() ? ipia::checkMovable(round.Movable) : refusal;
+  return refusal.empty() ? ipia::checkWeights(round.ControlWeights, ipia::nameOf(weights))
+                         : refusal;
 }
 
 std::string vtkFairingPIASurfaceFilter::Surface::read(const ipia::FairingParameters& parameters)
@@ -268,21 +281,19 @@ std::string vtkFairingPIASurfaceFilter::Surface::read(const ipia::FairingParamet
       " needs ", least, " at least. Give more points or set a lower Degree.");
   }
   const bool given = this->Filter->Parametrization == Given;
-  std::string refusal = given ? std::string() : this->readGridSize();
+  std::string refusal = this->checkGrid();
+  refusal = refusal.empty() && !given ? this->readGridSize() : refusal;
   refusal = refusal.empty() ? this->readPoints() : refusal;
   if (refusal.empty())
   {
     refusal = given ? this->readGivenParameters() : this->readGridParameters();
   }
-  vtkDataArray* weights = this->Filter->GetInputArrayToProcess(0, this->Input);
+  vtkDataArray* weights = nullptr;
+  refusal = refusal.empty()
+    ? ipia::chooseArray(this->Filter, 0, this->Input, 1, "fairing weights", weights)
+    : refusal;
   if (refusal.empty() && weights)
   {
-    if (weights->GetNumberOfComponents() != 1)
-    {
-      return ipia::text("The fairing weights have ", weights->GetNumberOfComponents(),
-        " components. Choose a point array of one component with SetInputArrayToProcess(0, 0, "
-        "...).");
-    }
     this->round().DataWeights = ipia::toVector(weights);
     refusal = ipia::checkWeights(this->round().DataWeights, ipia::nameOf(weights));
   }
@@ -294,6 +305,5 @@ std::string vtkFairingPIASurfaceFilter::Surface::read(const ipia::FairingParamet
   {
     this->round().InsertedKnots[axis] = this->Filter->InsertedKnots[axis];
   }
-  return this->Controls && this->Controls->GetNumberOfPoints() > 0 ? this->readEarlierRound()
-                                                                   : this->start(parameters.Degree);
+  return this->Controls ? this->readEarlierRound() : this->start(parameters.Degree);
 }

@@ -28,6 +28,8 @@ public:
   }
 
   std::string read(const ipia::FairingParameters& parameters);
+  /// Why the samples would not fit into memory, or nothing.
+  std::string checkMemory(const ipia::FairingParameters& parameters) const;
   std::string run(const ipia::FairingParameters& parameters);
   void writeData(vtkPolyData* output);
   void writeControls(vtkPolyData* output) const;
@@ -39,6 +41,9 @@ private:
   ipia::FairingRound& round() { return this->Rounds.front(); }
   const ipia::FairingRound& round() const { return this->Rounds.front(); }
 
+  /// Number of samples along an axis.
+  std::size_t sampleCount(std::size_t axis) const;
+  std::string checkGrid();
   std::string readGridSize();
   std::string readPoints();
   std::string readGivenParameters();

@@ -3,10 +3,9 @@
 
 #include "Core/AutomaticLattice.h"
 #include "IPIAControlLattice.h"
+#include "IPIAMemory.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFitter.h"
-
-#include "vtksys/SystemInformation.hxx"
 
 #include <algorithm>
 #include <cmath>
@@ -32,13 +31,6 @@ constexpr double BytesPerBrick = 2048, BytesPerAbsentBrick = 16;
 /// Bricks around a brick with data, and layers of them on both sides of a surface that crosses the
 /// lattice twice along every axis.
 constexpr double BricksAroundOne = 27, LayersOfBricks = 6;
-}
-
-double memoryOfMachine()
-{
-  vtksys::SystemInformation information;
-  information.RunMemoryCheck();
-  return 1024.0 * static_cast<double>(information.GetHostMemoryTotal());
 }
 
 bool FitParameters::isClassic() const
@@ -381,11 +373,10 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
   const double available = memoryOfMachine();
   if (needed > MemoryShare * available)
   {
-    constexpr double gibibyte = 1073741824;
-    this->Refusal = text("The fit would take about ", needed / gibibyte,
+    this->Refusal = text("The fit would take about ", needed / Gibibyte,
       " GiB of memory (GridSize ", this->GridSize[0], " x ", this->GridSize[1], " x ",
       this->GridSize[2], ", ", this->WholeExtent[1] + 1, " x ", this->WholeExtent[3] + 1, " x ",
-      this->WholeExtent[5] + 1, " samples); the machine has ", available / gibibyte,
+      this->WholeExtent[5] + 1, " samples); the machine has ", available / Gibibyte,
       " GiB. Reduce GridSize or SampleDimensions.");
   }
 }

@@ -10,12 +10,6 @@
 
 namespace ipia
 {
-/// Bytes.
-double memoryOfMachine();
-
-/// Share of them that a result may be expected to take.
-constexpr double MemoryShare = 0.9;
-
 /// The values of vtkIPIAImplicitFitter's parameters, under their names there.
 struct FitParameters
 {

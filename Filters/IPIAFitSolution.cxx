@@ -356,8 +356,9 @@ FitSolution<Dim> solve(
     solution.OffsetDistance = parameters.OffsetDistance > 0 ? parameters.OffsetDistance : automatic;
   }
   const OffsetRows offsets = offsetRowsOf(problem, parameters, automatic);
+  // With extra rows the offsets may be left out on purpose.
   if (parameters.NormalConstraint != vtkIPIAImplicitFitter::Gradient &&
-    offsetRowsInside(lattice, problem, offsets) == 0)
+    problem.Cloud.ExtraPositions.empty() && offsetRowsInside(lattice, problem, offsets) == 0)
   {
     solution.Error = text("No offset row lies in the domain: their distance from the points is ",
       solution.OffsetDistance, ". Reduce OffsetDistance, or enlarge ModelBounds or Padding.");

@@ -27,6 +27,9 @@ namespace
 constexpr double ProgressOfFit = 0.9;
 
 constexpr int SamplesPerSpan = 10;
+
+/// Of the points, cells and arrays of output 0.
+constexpr double BytesPerSample = 120;
 }
 
 std::string vtkFairingPIACurveFilter::Curves::run(const ipia::FairingParameters& parameters)
@@ -43,6 +46,25 @@ std::string vtkFairingPIACurveFilter::Curves::run(const ipia::FairingParameters&
     }
   }
   return {};
+}
+
+vtkIdType vtkFairingPIACurveFilter::Curves::sampleCount(const ipia::FairingRound& round) const
+{
+  const int asked = this->Filter->SampleDimensions;
+  return asked > 0
+    ? std::max(asked, 2)
+    : SamplesPerSpan * static_cast<vtkIdType>(round.Spline.Axes[0].spans().size()) + 1;
+}
+
+std::string vtkFairingPIACurveFilter::Curves::checkMemory(
+  const ipia::FairingParameters& parameters) const
+{
+  double samples = 0;
+  for (const ipia::FairingRound& round : this->Rounds)
+  {
+    samples += static_cast<double>(this->sampleCount(round));
+  }
+  return ipia::checkMemory(this->Rounds, parameters, samples, BytesPerSample, this->Input);
 }
 
 void vtkFairingPIACurveFilter::Curves::writeData(vtkPolyData* output) const
@@ -133,10 +155,7 @@ void vtkFairingPIACurveFilter::Curves::writeSamples(vtkPolyData* output, vtkPoly
   vtkNew<vtkCellArray> cells;
   for (const ipia::FairingRound& round : this->Rounds)
   {
-    const int asked = this->Filter->SampleDimensions;
-    const vtkIdType count = asked > 0
-      ? std::max(asked, 2)
-      : SamplesPerSpan * static_cast<vtkIdType>(round.Spline.Axes[0].spans().size()) + 1;
+    const vtkIdType count = this->sampleCount(round);
     cells->InsertNextCell(static_cast<int>(count));
     for (vtkIdType i = 0; i < count; ++i)
     {
@@ -251,11 +270,7 @@ std::string vtkFairingPIACurveFilter::Fair(vtkInformationVector** input,
 {
   Curves curves(this, vtkPolyData::GetData(input[0]), vtkPolyData::GetData(input[1]));
   std::string refusal = curves.read(parameters);
-  if (refusal.empty())
-  {
-    const auto lines = static_cast<double>(curves.Rounds.size());
-    refusal = ipia::checkSamples(lines * this->SampleDimensions, vtkPolyData::GetData(input[0]));
-  }
+  refusal = refusal.empty() ? curves.checkMemory(parameters) : refusal;
   refusal = refusal.empty() ? curves.run(parameters) : refusal;
   if (!refusal.empty() || this->Aborted)
   {

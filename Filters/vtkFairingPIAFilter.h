@@ -42,8 +42,16 @@
  * ### Errors
  * Refused with one error and empty outputs: weights outside [0, 1], too few points, coinciding
  * neighbours where parameters depend on distances, parameters that are unsorted or outside [0, 1],
- * values that are not finite, control points of an earlier round that do not fit, and divergence.
- * One warning tells that the tolerance was not reached. An abort leaves empty outputs.
+ * values that are not finite, points whose extent is not from 1e-100 to 1e100, lines and grids that
+ * do not fit their points, arrays that are not there, hold no numbers, are not of points or have
+ * not one tuple per point, control points of an earlier round that do not fit or are none at all,
+ * different knots nearer than 1e-12 to each other, what the machine's memory would not hold,
+ * divergence, and equations without a unique solution (Solver). An array is none by the names ""
+ * and "None". A knot to be inserted that differs from another by less than 1e-12 counts as that
+ * one. One warning tells that the tolerance was not reached. An abort leaves empty outputs.
+ *
+ * Blanking and ghost arrays are ignored: all points count. Each block of a composite is an input of
+ * its own; an empty one is refused as an input without points.
  *
  * ### Threads and reproducibility
  * The fit runs on OpenMP threads (OMP_NUM_THREADS). Results do not depend on their number, bit for
@@ -176,7 +184,12 @@ public:
 
   ///@{
   /**
-   * Default ProgressiveIteration.
+   * Default ProgressiveIteration. SparseDirect refines its solution once, and refuses it as not
+   * unique if it is not finite, if the refinement moves the control points by more than 1e-3 of
+   * their size, which is to say that rounding times the condition of A leaves fewer than three
+   * digits, or if more than 1e-6 of the iteration error is left and that is not rounding of A P.
+   * Such are a FairingWeight of 1, where A = D does not see polynomials of low degree, and one of 0
+   * with as many control points as data. ProgressiveIteration keeps what A does not see.
    */
   vtkSetClampMacro(Solver, int, ProgressiveIteration, SparseDirect);
   vtkGetMacro(Solver, int);

@@ -31,12 +31,29 @@ constexpr double ProgressOfFit = 0.9;
 
 constexpr int SamplesPerSpan = 4;
 
+/// Of the points, cells and arrays of output 0; cells grow by doubling.
+constexpr double BytesPerSample = 250;
 }
 
 std::string vtkFairingPIASurfaceFilter::Surface::run(const ipia::FairingParameters& parameters)
 {
   return this->round().run(
     parameters, [&](double share) { return !this->Filter->Report(ProgressOfFit * share); });
+}
+
+std::size_t vtkFairingPIASurfaceFilter::Surface::sampleCount(std::size_t axis) const
+{
+  const int asked = this->Filter->SampleDimensions[axis];
+  return asked > 0 ? std::max<std::size_t>(static_cast<std::size_t>(asked), 2)
+                   : SamplesPerSpan * this->round().Spline.Axes[axis].spans().size() + 1;
+}
+
+std::string vtkFairingPIASurfaceFilter::Surface::checkMemory(
+  const ipia::FairingParameters& parameters) const
+{
+  const double samples =
+    static_cast<double>(this->sampleCount(0)) * static_cast<double>(this->sampleCount(1));
+  return ipia::checkMemory(this->Rounds, parameters, samples, BytesPerSample, this->Input);
 }
 
 void vtkFairingPIASurfaceFilter::Surface::writeData(vtkPolyData* output)
@@ -165,9 +182,7 @@ void vtkFairingPIASurfaceFilter::Surface::writeSamples(vtkPolyData* output, vtkP
   std::vector<double> parameters[2];
   for (const std::size_t axis : { 0u, 1u })
   {
-    const int asked = this->Filter->SampleDimensions[axis];
-    const auto count = asked > 0 ? std::max<std::size_t>(static_cast<std::size_t>(asked), 2)
-                                 : SamplesPerSpan * round.Spline.Axes[axis].spans().size() + 1;
+    const std::size_t count = this->sampleCount(axis);
     for (std::size_t k = 0; k < count; ++k)
     {
       parameters[axis].push_back(static_cast<double>(k) / static_cast<double>(count - 1));
@@ -263,18 +278,7 @@ std::string vtkFairingPIASurfaceFilter::Fair(vtkInformationVector** input,
 {
   Surface surface(this, vtkPointSet::GetData(input[0]), vtkPolyData::GetData(input[1]));
   std::string refusal = surface.read(parameters);
-  if (refusal.empty())
-  {
-    double samples = 1;
-    for (const std::size_t axis : { 0u, 1u })
-    {
-      const int asked = this->SampleDimensions[axis];
-      const std::size_t spans = surface.rounds().front().Spline.Axes[axis].spans().size() +
-        this->InsertedKnots[axis].size();
-      samples *= asked > 0 ? asked : static_cast<double>(SamplesPerSpan * spans + 1);
-    }
-    refusal = ipia::checkSamples(samples, vtkPointSet::GetData(input[0]));
-  }
+  refusal = refusal.empty() ? surface.checkMemory(parameters) : refusal;
   refusal = refusal.empty() ? surface.run(parameters) : refusal;
   if (!refusal.empty() || this->Aborted)
   {

@@ -27,6 +27,8 @@ class BSplineBasis
 {
 public:
   static constexpr int MaximumDegree = 5;
+  /// Different knots nearer to each other than that leave derivatives no digits.
+  static constexpr double SmallestSpan = 1e-12;
 
   BSplineBasis();
 

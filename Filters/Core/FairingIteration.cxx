@@ -21,6 +21,10 @@ constexpr double DivergedError = 1e6;
 /// Rounding of A P and its right-hand side, in units of their size.
 constexpr double Rounding = 64 * std::numeric_limits<double>::epsilon();
 
+/// SparseDirect: the most that refinement may move the control points, and the most that may be
+/// left of the error.
+constexpr double LargestRefinement = 1e-3, LargestDirectError = 1e-6;
+
 /// Control points with what A makes of them, kept up to date by linearity.
 struct State
 {
@@ -51,6 +55,11 @@ public:
 
   FairingResult run()
   {
+    if (!this->Current.X.allFinite() || !std::isfinite(this->FirstNorm))
+    {
+      this->Result.Status = FairingStatus::NotFinite;
+      return this->Result;
+    }
     switch (this->Options.Solver)
     {
       case FairingSolver::ProgressiveIteration:
@@ -62,6 +71,10 @@ public:
       case FairingSolver::SparseDirect:
         this->sparseDirect();
         break;
+    }
+    if (!this->Current.X.allFinite() && this->Result.Status != FairingStatus::Singular)
+    {
+      this->Result.Status = FairingStatus::Diverged;
     }
     this->Points = this->Current.X;
     return this->Result;
@@ -136,7 +149,7 @@ private:
   double record()
   {
     const double norm = std::sqrt(this->dot(this->Residual, this->Residual));
-    const double error = this->FirstNorm > 0 ? norm / this->FirstNorm : 0.0;
+    const double error = norm == 0 ? 0.0 : norm / this->FirstNorm;
     FairingHistory& history = this->Result.History;
     history.IterationError.push_back(error);
     history.Energy.push_back(this->dot(this->Current.X, this->Current.Fairing));
@@ -259,11 +272,11 @@ private:
     {
       this->product(mu, p, alongP, v);
       const double slope = this->dot(shadow, v);
-      if (slope == 0)
+      const double alpha = rho / slope;
+      if (slope == 0 || !std::isfinite(alpha))
       {
         return this->breakDown();
       }
-      const double alpha = rho / slope;
       this->forEach(
         [&](std::int64_t j, Eigen::Index c) { this->Residual(j, c) -= alpha * v(j, c); });
       this->advance(alpha, alongP);
@@ -274,23 +287,28 @@ private:
       this->forEach(
         [&](std::int64_t j, Eigen::Index c) { this->Residual(j, c) -= omega * t(j, c); });
       const double next = this->dot(shadow, this->Residual);
-      if (next == 0 || omega == 0)
+      const double beta = next / rho * alpha / omega;
+      if (next == 0 || omega == 0 || !std::isfinite(beta))
       {
-        if (this->record() > 0)
+        if (this->record() != 0)
         {
           return this->breakDown();
         }
         this->Result.Status = FairingStatus::Converged;
         return;
       }
-      const double beta = next / rho * alpha / omega;
       rho = next;
       this->forEach([&](std::int64_t j, Eigen::Index c)
         { p(j, c) = this->Residual(j, c) + beta * (p(j, c) - omega * v(j, c)); });
     }
   }
 
-  void breakDown() { this->Result.Status = FairingStatus::NotConverged; }
+  /// There is no next direction: nothing is left to do, or the method ends here.
+  void breakDown()
+  {
+    this->Result.Status =
+      this->Options.Tolerance > 0 ? FairingStatus::NotConverged : FairingStatus::AllDone;
+  }
 
   void sparseDirect()
   {
@@ -333,37 +351,74 @@ private:
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(entries.begin(), entries.end());
     entries = {};
-    MatrixXd step;
     bool solved = false;
     if (symmetric)
     {
       const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(matrix);
-      solved = factors.info() == Eigen::Success;
-      step = solved ? MatrixXd(factors.solve(side)) : step;
+      solved = this->solveAndRefine(factors, unknown, side);
     }
     else
     {
       Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(matrix);
-      solved = factors.info() == Eigen::Success;
-      step = solved ? MatrixXd(factors.solve(side)) : step;
+      solved = this->solveAndRefine(factors, unknown, side);
     }
-    if (!solved || !step.allFinite())
+    const double error = this->record();
+    const bool small = error <= LargestDirectError || this->residualIsRounding();
+    this->Result.Status = solved && small ? FairingStatus::Converged : FairingStatus::Singular;
+  }
+
+  /// Moves the control points that @a unknown numbers by the solution for @a side, then by that for
+  /// the residual it leaves. False if the second step shows that the first means nothing.
+  template <typename Factors>
+  bool solveAndRefine(
+    const Factors& factors, const std::vector<std::int64_t>& unknown, MatrixXd side)
+  {
+    for (const bool refinement : { false, true })
     {
-      this->Result.Status = FairingStatus::Singular;
-      return;
-    }
-    for (std::int64_t j = 0; j < this->System.size(); ++j)
-    {
-      const std::int64_t row = unknown[static_cast<std::size_t>(j)];
-      if (row >= 0)
+      if (factors.info() != Eigen::Success)
       {
-        this->Current.X.row(j) += step.row(row);
+        return false;
+      }
+      const MatrixXd step = factors.solve(side);
+      if (!step.allFinite())
+      {
+        return false;
+      }
+      double squaredSize = 0;
+      for (std::int64_t j = 0; j < this->System.size(); ++j)
+      {
+        const std::int64_t row = unknown[static_cast<std::size_t>(j)];
+        if (row >= 0)
+        {
+          this->Current.X.row(j) += step.row(row);
+          squaredSize += this->Current.X.row(j).squaredNorm();
+        }
+      }
+      this->System.apply(this->Current.X, this->Current.Fitting, this->Current.Fairing);
+      this->updateResidual();
+      if (refinement)
+      {
+        return step.norm() <= LargestRefinement * std::sqrt(squaredSize);
+      }
+      for (std::int64_t j = 0; j < this->System.size(); ++j)
+      {
+        const std::int64_t row = unknown[static_cast<std::size_t>(j)];
+        if (row >= 0)
+        {
+          side.row(row) = this->Residual.row(j);
+        }
       }
     }
-    this->System.apply(this->Current.X, this->Current.Fitting, this->Current.Fairing);
-    this->updateResidual();
-    this->record();
-    this->Result.Status = FairingStatus::Converged;
+    return true;
+  }
+
+  /// The residual is no larger than the rounding of A P and of the right-hand side.
+  bool residualIsRounding() const
+  {
+    const Vector sums = this->System.absoluteRowSums();
+    const double size = sums.norm() * this->Current.X.cwiseAbs().maxCoeff() +
+      std::sqrt(this->dot(this->System.rightHandSide(), this->System.rightHandSide()));
+    return std::sqrt(this->dot(this->Residual, this->Residual)) <= Rounding * size;
   }
 
   /// The error of the state that the history has already.

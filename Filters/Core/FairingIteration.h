@@ -22,7 +22,13 @@ enum class FairingSolver
   ProgressiveIteration,
   /// Stabilised biconjugate gradients, preconditioned by M; two products with A per iteration.
   BiconjugateGradient,
-  /// Sparse factorisation of A; with equal weights the classical minimiser of the energy.
+  /**
+   * Sparse factorisation of A with one step of iterative refinement; with equal weights the
+   * classical minimiser of the energy. Singular where the solution is not one: it is not finite,
+   * the refinement moves the control points by more than 1e-3 of their size (so that fewer than
+   * three digits are determined: the size of the step is the rounding unit times the condition), or
+   * the error left is above both 1e-6 of that at the beginning and the rounding of A P.
+   */
   SparseDirect
 };
 
@@ -46,7 +52,8 @@ enum class FairingStatus
   AllDone,      ///< Tolerance is 0 and the number of iterations is reached
   NotConverged, ///< the number of iterations is reached, the tolerance not
   Diverged,     ///< the iteration error grew without bound
-  Singular,     ///< SparseDirect: A has no inverse
+  Singular,     ///< SparseDirect: A has no inverse, or none that rounding leaves anything of
+  NotFinite,    ///< the equations or the state at the beginning have values that are not finite
   Aborted       ///< the callback returned false; the control points are those of the last iteration
 };
 

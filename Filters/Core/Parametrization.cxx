@@ -94,7 +94,10 @@ BSplineBasis averagedKnots(const Vector& parameters, int degree, std::int64_t n,
     const double alpha = position - static_cast<double>(i);
     const double low = closed ? parameters[i] : parameters[i - 1];
     const double high = !closed ? parameters[i] : i + 1 < m ? parameters[i + 1] : 1.0;
-    interior.push_back((1 - alpha) * low + alpha * high);
+    const double knot = (1 - alpha) * low + alpha * high;
+    const bool same =
+      !interior.empty() && std::abs(knot - interior.back()) < BSplineBasis::SmallestSpan;
+    interior.push_back(same ? interior.back() : knot);
   }
   return closed ? BSplineBasis::periodic(degree, interior)
                 : BSplineBasis::clamped(degree, interior);

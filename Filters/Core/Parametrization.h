@@ -39,7 +39,8 @@ Vector parametrizeGrid(const Eigen::MatrixXd& points, std::int64_t rows, std::in
  * span has data: with d = m / (n - p), i = floor(j d) and alpha = j d - i the knots are
  * u_{j+p} = (1 - alpha) t_{i-1} + alpha t_i, j = 1, ..., n - p - 1 (Jiang and Lin; Piegl and
  * Tiller, eq. 9.69). Closed: n spans, d = m / n, u_j = (1 - alpha) t_i + alpha t_{i+1} with t_m
- * = 1. Needs p + 1 <= n <= m.
+ * = 1. Knots that differ by less than BSplineBasis::SmallestSpan, as means of equal parameters do
+ * by rounding, are made equal. Needs p + 1 <= n <= m.
  */
 BSplineBasis averagedKnots(const Vector& parameters, int degree, std::int64_t n, bool closed);
 

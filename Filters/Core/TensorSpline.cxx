@@ -100,16 +100,28 @@ CurvePoint curvePoint(const TensorSpline& curve, double u)
   point.CurvatureNormal.setZero();
   const Eigen::Vector3d first = d.col(1), second = d.col(2), third = d.col(3);
   const double speed = first.norm();
-  if (speed > 0)
+  if (!(speed > 0))
   {
-    point.Tangent = first / speed;
-    const Eigen::Vector3d binormal = first.cross(second);
-    point.Curvature = binormal.norm() / (speed * speed * speed);
-    point.CurvatureNormal = binormal.cross(first) / std::pow(speed, 4);
-    if (binormal.norm() > Parallel * speed * second.norm())
-    {
-      point.Torsion = binormal.dot(third) / binormal.squaredNorm();
-    }
+    return point;
+  }
+  // Divided by the speed at once: its powers leave the range of double long before curvature does.
+  const Eigen::Vector3d tangent = first / speed;
+  const Eigen::Vector3d along = second / speed;
+  const Eigen::Vector3d turn = tangent.cross(along);
+  const Eigen::Vector3d binormal = turn / speed; // times the curvature
+  const double curvature = binormal.norm();
+  double torsion = 0;
+  if (turn.norm() > Parallel * along.norm())
+  {
+    const Eigen::Vector3d rise = third / speed / speed / speed;
+    torsion = (binormal / curvature).dot(rise) / curvature;
+  }
+  if (std::isfinite(curvature) && std::isfinite(torsion))
+  {
+    point.Tangent = tangent;
+    point.Curvature = curvature;
+    point.Torsion = torsion;
+    point.CurvatureNormal = binormal.cross(tangent);
   }
   return point;
 }
@@ -121,17 +133,29 @@ SurfacePoint surfacePoint(const TensorSpline& surface, double u, double v)
   SurfacePoint point;
   point.Position = d.col(0);
   point.Normal.setZero();
-  const Eigen::Vector3d du = d.col(1), duu = d.col(2), dv = d.col(3), duv = d.col(4),
-                        dvv = d.col(6);
+  const double a = d.col(1).norm(), b = d.col(3).norm();
+  if (!(a > 0 && b > 0))
+  {
+    return point;
+  }
+  // Divided by the lengths at once, as above.
+  const Eigen::Vector3d du = d.col(1) / a, dv = d.col(3) / b;
   const Eigen::Vector3d cross = du.cross(dv);
   const double area = cross.norm();
-  if (area > Parallel * du.norm() * dv.norm())
+  if (area > Parallel)
   {
-    point.Normal = cross / area;
-    const double e = du.dot(du), f = du.dot(dv), g = dv.dot(dv);
-    const double l = duu.dot(point.Normal), m = duv.dot(point.Normal), n = dvv.dot(point.Normal);
-    point.MeanCurvature = -(e * n - 2 * f * m + g * l) / (2 * area * area);
-    point.GaussCurvature = (l * n - m * m) / (area * area);
+    const Eigen::Vector3d normal = cross / area;
+    const double f = du.dot(dv);
+    const double l = d.col(2).dot(normal) / a / a, m = d.col(4).dot(normal) / a / b;
+    const double n = d.col(6).dot(normal) / b / b;
+    const double mean = -(n - 2 * f * m + l) / (2 * area * area);
+    const double gauss = (l * n - m * m) / (area * area);
+    if (std::isfinite(mean) && std::isfinite(gauss))
+    {
+      point.Normal = normal;
+      point.MeanCurvature = mean;
+      point.GaussCurvature = gauss;
+    }
   }
   return point;
 }

@@ -51,7 +51,7 @@ struct CurvePoint
   Eigen::Vector3d CurvatureNormal;
 };
 
-/// Where P' = 0 all but the position are 0.
+/// Where P' = 0, or so small that curvature leaves the range of double, all but the position are 0.
 CurvePoint curvePoint(const TensorSpline& curve, double u);
 
 /// What a surface is like at a pair of parameters.
@@ -65,7 +65,8 @@ struct SurfacePoint
   double GaussCurvature = 0; ///< k1 k2
 };
 
-/// Where P_u and P_v are parallel, such as at a pole, all but the position are 0.
+/// Where P_u and P_v are parallel, such as at a pole, or so small that curvature leaves the range
+/// of double, all but the position are 0.
 SurfacePoint surfacePoint(const TensorSpline& surface, double u, double v);
 }
 

@@ -248,6 +248,58 @@ TEST(FairingIteration, SingularSystemsKeepWhatTheyDoNotSee)
   }
 }
 
+/// A direct solution of singular or nearly singular equations is told from one that is determined.
+TEST(FairingIteration, DirectSolutionsThatAreNotDeterminedAreSingular)
+{
+  FairingOptions options;
+  options.Solver = FairingSolver::SparseDirect;
+  for (const int order : { 1, 2, 3 })
+  {
+    for (const bool closed : { false, true })
+    {
+      FairingProblem problem = curveProblem(3, order, closed);
+      TensorSpline spline;
+      problem.Weights.setConstant(1);
+      EXPECT_EQ(problem.solve(options, spline).Status, FairingStatus::Singular);
+      problem.Weights.setConstant(balancedWeight(problem));
+      EXPECT_EQ(problem.solve(options, spline).Status, FairingStatus::Converged);
+      // Its own solution once more: only rounding is left to solve for.
+      problem.Start = spline;
+      options.Tolerance = 0;
+      TensorSpline again;
+      EXPECT_EQ(problem.solve(options, again).Status, FairingStatus::Converged);
+      EXPECT_LE(difference(again.ControlPoints, spline.ControlPoints), 1e-9);
+      options.Tolerance = 1e-6;
+    }
+  }
+}
+
+TEST(FairingIteration, WhatIsNotFiniteIsNotConverged)
+{
+  for (const FairingSolver solver : { FairingSolver::ProgressiveIteration,
+         FairingSolver::BiconjugateGradient, FairingSolver::SparseDirect })
+  {
+    FairingOptions options;
+    options.Solver = solver;
+    FairingProblem problem = curveProblem(3, 2, false);
+    TensorSpline spline;
+    problem.Start.ControlPoints(3, 1) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(problem.solve(options, spline).Status, FairingStatus::NotFinite);
+  }
+}
+
+TEST(FairingIteration, ConjugateGradientsWithoutToleranceEndAtTheSolution)
+{
+  FairingProblem problem = curveProblem(3, 2, false);
+  problem.Weights.setConstant(balancedWeight(problem));
+  FairingOptions options = count(100000);
+  options.Solver = FairingSolver::BiconjugateGradient;
+  TensorSpline spline;
+  const FairingResult result = problem.solve(options, spline);
+  EXPECT_EQ(result.Status, FairingStatus::AllDone);
+  EXPECT_LE(result.History.IterationError.back(), 1e-12);
+}
+
 TEST(FairingIteration, AChangeOfMovableControlPointsStaysInTheirSupport)
 {
   FairingProblem problem = curveProblem(3, 2, false, 200, 60);
