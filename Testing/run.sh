@@ -63,7 +63,9 @@ check()
   summary+=("$name: $line, $((SECONDS - start)) s")
 }
 
-check "core with sanitizers" "$sanitized" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+# Little optimization: it halves the time to compile and hardly lengthens the tests.
+check "core with sanitizers" "$sanitized" \
+  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1 -DNDEBUG" \
   -DIPIA_CORE_ONLY=ON -DIPIA_SANITIZE=address,undefined -DIPIA_BUILD_TESTING=ON
 check "all" "$main" -DCMAKE_BUILD_TYPE=Release \
   -DIPIA_BUILD_TESTING=ON -DIPIA_BUILD_EXAMPLES=ON -DIPIA_WRAP_PYTHON=ON
