@@ -5,6 +5,7 @@
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSignedCharArray.h"
@@ -126,6 +127,22 @@ std::string readFarField(vtkFieldData* field, std::int64_t boxes, FarField& far)
 }
 }
 
+void placeImage(const Frame& frame, const double origin[3], vtkImageData* image)
+{
+  const std::array<double, 3> world = frame.toWorld(origin);
+  image->SetOrigin(world.data());
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> direction = frame.direction();
+  image->SetDirectionMatrix(direction.data());
+}
+
+void turnVectors(const Frame& frame, vtkDataArray* vectors)
+{
+  for (vtkIdType i = 0; frame.isTurned() && i < vectors->GetNumberOfTuples(); ++i)
+  {
+    vectors->SetTuple(i, frame.vectorToWorld(vectors->GetTuple3(i)).data());
+  }
+}
+
 template <int Dim>
 void toControlLattice(
   const ImplicitSpline<Dim>& spline, const Placement<Dim>& placement, vtkImageData* image)
@@ -143,7 +160,7 @@ void toControlLattice(
   }
   image->Initialize();
   image->SetDimensions(dimensions);
-  image->SetOrigin(origin);
+  placeImage(placement.Turn, origin, image);
   image->SetSpacing(spacing);
 
   image->GetPointData()->SetScalars(newPointArray(CoefficientArrayName, spline.coefficients()));
@@ -172,6 +189,13 @@ std::string fromControlLattice(
   const auto flat = std::find(dimensions, dimensions + 3, 1) - dimensions;
   placement = Placement<Dim>::withFlatAxis(static_cast<int>(flat));
   image->GetOrigin(placement.Origin.data());
+  const Eigen::Matrix3d direction = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+    image->GetDirectionMatrix()->GetData());
+  if (!direction.isUnitary(1e-9))
+  {
+    return "the direction matrix of the control lattice is not orthonormal";
+  }
+  placement.Turn = { Eigen::Map<const Eigen::Vector3d>(image->GetOrigin()), direction };
   Lattice<Dim> lattice;
   for (int a = 0; a < Dim; ++a)
   {

@@ -187,18 +187,29 @@ void FitProblem::CheckCombination(const FitParameters& parameters)
 
 void FitProblem::ChooseDimension(const FitParameters& parameters)
 {
-  const int flat = this->Cloud.flatAxis();
+  int flat = parameters.Dimension == 3 ? -1 : this->Cloud.flatAxis();
+  if (parameters.Dimension != 3 && flat < 0 && this->Cloud.tiltedPlane(this->Frame, flat))
+  {
+    const auto& bounds = parameters.ModelBounds;
+    if (bounds[0] <= bounds[1] || bounds[2] <= bounds[3] || bounds[4] <= bounds[5])
+    {
+      this->Refusal = "ModelBounds are a box along the axes, but points and normals lie in a plane "
+                      "that is tilted. Leave them unset, or set Dimension to 3.";
+      return;
+    }
+  }
+  this->PointBounds = this->Cloud.boundsIn(this->Frame);
   if (parameters.Dimension == 2 && flat < 0)
   {
     const int thin = this->Cloud.axisWithoutExtent();
     this->Refusal = thin < 0
-      ? "Dimension is 2, but the points do not lie in a plane perpendicular to an axis."
+      ? "Dimension is 2, but points and normals do not lie in a plane."
       : text("Dimension is 2, but normals point out of the plane of the points (along axis ", thin,
           ").");
     return;
   }
-  this->Dimension = parameters.Dimension == 3 || flat < 0 ? 3 : 2;
-  this->FlatAxis = this->Dimension == 2 ? flat : -1;
+  this->Dimension = flat < 0 ? 3 : 2;
+  this->FlatAxis = flat;
   if (this->Dimension == 3 && this->Cloud.isLine())
   {
     this->Refusal = text("All ", this->Cloud.Positions.size(),
@@ -209,7 +220,8 @@ void FitProblem::ChooseDimension(const FitParameters& parameters)
 template <int Dim>
 void FitProblem::ChooseLattice(const FitParameters& parameters)
 {
-  const auto place = Placement<Dim>::withFlatAxis(this->FlatAxis);
+  auto place = Placement<Dim>::withFlatAxis(this->FlatAxis);
+  place.Turn = this->Frame;
   const double* bounds = parameters.ModelBounds.data();
   bool automatic = true;
   Box<Dim> box, model;
@@ -218,8 +230,8 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
   {
     const auto i = static_cast<std::size_t>(a);
     const auto axis = static_cast<std::size_t>(place.Axis[i]);
-    box.Lower[a] = this->Cloud.Bounds[2 * axis];
-    box.Upper[a] = this->Cloud.Bounds[2 * axis + 1];
+    box.Lower[a] = this->PointBounds[2 * axis];
+    box.Upper[a] = this->PointBounds[2 * axis + 1];
     model.Lower[a] = bounds[2 * axis];
     model.Upper[a] = bounds[2 * axis + 1];
     automatic = automatic && !(bounds[2 * axis] <= bounds[2 * axis + 1]);
@@ -232,7 +244,7 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
     }
   }
 
-  const double longest = this->Cloud.longestSide();
+  const double longest = (box.Upper - box.Lower).maxCoeff();
   // Sizes say the spacing, all of them or, on an automatic domain, any.
   const bool anyGiven = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
   const bool allGiven = std::all_of(size.begin(), size.end(), [](auto n) { return n > 0; });
@@ -285,7 +297,7 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
 
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->Origin[axis] = this->Upper[axis] = this->Cloud.Bounds[static_cast<std::size_t>(2 * axis)];
+    this->Origin[axis] = this->Upper[axis] = this->PointBounds[static_cast<std::size_t>(2 * axis)];
     this->Spacing[axis] = placed.Grid.Spacing[0];
     this->GridSize[axis] = 1;
   }
@@ -383,8 +395,9 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
 
 void FitProblem::DropPointsOutside()
 {
-  const auto inside = [this](const std::array<double, 3>& x)
+  const auto inside = [this](const std::array<double, 3>& position)
   {
+    const std::array<double, 3> x = this->Frame.toFrame(position.data());
     for (int axis = 0; axis < 3; ++axis)
     {
       const double value = x[static_cast<std::size_t>(axis)];

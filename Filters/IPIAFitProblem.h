@@ -57,7 +57,9 @@ public:
   vtkIdType OutsideBounds = 0; ///< points and extra rows that were dropped
 
   int Dimension = 3;
-  int FlatAxis = -1; ///< the axis across the plane in 2-D
+  ipia::Frame Frame; ///< turned where the points lie in a tilted plane; what follows is in it
+  std::array<double, 6> PointBounds{}; ///< min and max of the points per axis
+  int FlatAxis = -1;                   ///< the axis across the plane in 2-D
   double Origin[3] = { 0, 0, 0 };
   double Upper[3] = { 0, 0, 0 };
   double Spacing[3] = { 1, 1, 1 };

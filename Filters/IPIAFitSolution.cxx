@@ -81,6 +81,7 @@ template <int Dim>
 Placement<Dim> placementOf(const FitProblem& problem)
 {
   auto place = Placement<Dim>::withFlatAxis(problem.FlatAxis);
+  place.Turn = problem.Frame;
   std::copy_n(problem.Origin, 3, place.Origin.begin());
   return place;
 }
@@ -105,11 +106,7 @@ Points<Dim> normalsOf(const FitProblem& problem, const Placement<Dim>& place)
   Points<Dim> local(Dim, static_cast<Eigen::Index>(normals.size()));
   for (std::size_t k = 0; k < normals.size(); ++k)
   {
-    for (int a = 0; a < Dim; ++a)
-    {
-      local(a, static_cast<Eigen::Index>(k)) =
-        normals[k][static_cast<std::size_t>(place.Axis[static_cast<std::size_t>(a)])];
-    }
+    local.col(static_cast<Eigen::Index>(k)) = place.toLocalVector(normals[k].data());
   }
   return local;
 }

@@ -5,6 +5,7 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkAppendPolyData.h"
+#include "vtkBoundingBox.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
@@ -26,6 +27,12 @@ namespace
 {
 /// Extents and normal components below this share of the longest side (of 1) count as none.
 constexpr double FlatTolerance = 1e-7;
+
+/// The same for planes that are perpendicular to no axis, whose points are rounded on all.
+constexpr double TiltedTolerance = 1e-6;
+
+/// A tilted plane is looked for with about so many points.
+constexpr std::size_t PointsOfPlane = 1000;
 
 /// Width of a line of points relative to its length, squared.
 constexpr double LineTolerance = 1e-12;
@@ -279,24 +286,76 @@ double PointCloud::longestSide() const
     this->Bounds[5] - this->Bounds[4] });
 }
 
-bool PointCloud::isLine() const
+namespace
 {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  const Vector3 first(this->Positions.front().data());
-  for (const auto& x : this->Positions)
+/// The second moments of every step'th point about their centre, which is given back; the unit of
+/// length is the longest side of the cloud.
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> momentsOf(
+  const PointCloud& cloud, std::size_t step, Eigen::Vector3d& centre)
+{
+  const Vector3 first(cloud.Positions.front().data());
+  centre.setZero();
+  double count = 0;
+  for (std::size_t k = 0; k < cloud.Positions.size(); k += step)
   {
-    centre += Vector3(x.data()) - first;
+    centre += Vector3(cloud.Positions[k].data()) - first;
+    ++count;
   }
-  centre = first + centre / static_cast<double>(this->Positions.size());
+  centre = first + centre / count;
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const auto& x : this->Positions)
+  for (std::size_t k = 0; k < cloud.Positions.size(); k += step)
   {
-    const Eigen::Vector3d d = (Vector3(x.data()) - centre) / this->longestSide();
+    const Eigen::Vector3d d = (Vector3(cloud.Positions[k].data()) - centre) / cloud.longestSide();
     scatter += d * d.transpose();
   }
-  const Eigen::Vector3d moments =
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter, Eigen::EigenvaluesOnly).eigenvalues();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter);
+}
+}
+
+bool PointCloud::isLine() const
+{
+  Eigen::Vector3d centre;
+  const Eigen::Vector3d moments = momentsOf(*this, 1, centre).eigenvalues();
   return moments[1] <= LineTolerance * moments[2];
+}
+
+bool PointCloud::tiltedPlane(Frame& frame, int& axis) const
+{
+  Eigen::Vector3d centre;
+  // Some points suggest a plane, which all are then held against.
+  const auto moments = momentsOf(*this, 1 + this->Positions.size() / PointsOfPlane, centre);
+  if (moments.eigenvalues()[1] <= LineTolerance * moments.eigenvalues()[2])
+  {
+    return false;
+  }
+  const Eigen::Vector3d across = moments.eigenvectors().col(0);
+  const double thickness = TiltedTolerance * this->longestSide();
+  for (std::size_t k = 0; k < this->Positions.size(); ++k)
+  {
+    if (!(std::abs(across.dot(Vector3(this->Positions[k].data()) - centre)) <= thickness) ||
+      !(std::abs(across.dot(Vector3(this->Normals[k].data()))) <= TiltedTolerance))
+    {
+      return false;
+    }
+  }
+  frame = Frame::acrossPlane(centre, across, axis);
+  return true;
+}
+
+std::array<double, 6> PointCloud::boundsIn(const Frame& frame) const
+{
+  if (!frame.isTurned())
+  {
+    return this->Bounds;
+  }
+  vtkBoundingBox box;
+  for (const auto& position : this->Positions)
+  {
+    box.AddPoint(frame.toFrame(position.data()).data());
+  }
+  std::array<double, 6> bounds;
+  box.GetBounds(bounds.data());
+  return bounds;
 }
 
 int PointCloud::axisWithoutExtent() const

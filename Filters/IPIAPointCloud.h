@@ -6,6 +6,8 @@
 #ifndef IPIAPointCloud_h
 #define IPIAPointCloud_h
 
+#include "IPIAFrame.h"
+
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
@@ -84,6 +86,13 @@ public:
 
   /// The axis that all points and normals are perpendicular to, or -1.
   int flatAxis() const;
+
+  /// Whether all points and normals lie in a plane that is perpendicular to no axis; a frame, and
+  /// the axis of it that is across the plane. False for points on a line.
+  bool tiltedPlane(Frame& frame, int& axis) const;
+
+  /// min and max per axis in a frame.
+  std::array<double, 6> boundsIn(const Frame& frame) const;
 
   /// The axis along which the points have no extent, or -1; normals may have any direction.
   int axisWithoutExtent() const;

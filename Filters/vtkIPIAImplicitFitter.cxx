@@ -275,6 +275,17 @@ int vtkIPIAImplicitFitter::RequestInformation(
   return 1;
 }
 
+namespace
+{
+void announcePlace(const ipia::Frame& frame, const double origin[3], vtkInformation* info)
+{
+  const std::array<double, 3> world = frame.toWorld(origin);
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> direction = frame.direction();
+  info->Set(vtkDataObject::ORIGIN(), world.data(), 3);
+  info->Set(vtkDataObject::DIRECTION(), direction.data(), 9);
+}
+}
+
 void vtkIPIAImplicitFitter::AnnounceOutputs(
   vtkInformationVector** input, vtkInformationVector* output)
 {
@@ -284,7 +295,7 @@ void vtkIPIAImplicitFitter::AnnounceOutputs(
   const ipia::FitProblem& problem = *this->State->Current;
 
   imageInfo->Set(Pipeline::WHOLE_EXTENT(), problem.WholeExtent, 6);
-  imageInfo->Set(vtkDataObject::ORIGIN(), problem.Origin, 3);
+  announcePlace(problem.Frame, problem.Origin, imageInfo);
   imageInfo->Set(vtkDataObject::SPACING(), problem.SampleSpacing, 3);
   imageInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   vtkDataObject::SetPointDataActiveScalarInfo(imageInfo, this->OutputScalarType, 1);
@@ -299,7 +310,7 @@ void vtkIPIAImplicitFitter::AnnounceOutputs(
     extent[2 * axis + 1] = problem.Refusal.empty() ? problem.GridSize[axis] - 1 : -1;
   }
   latticeInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
-  latticeInfo->Set(vtkDataObject::ORIGIN(), origin, 3);
+  announcePlace(problem.Frame, origin, latticeInfo);
   latticeInfo->Set(vtkDataObject::SPACING(), problem.Spacing, 3);
   vtkDataObject::SetPointDataActiveScalarInfo(latticeInfo, VTK_DOUBLE, 1);
 
@@ -562,6 +573,7 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
         return false;
       }
     }
+    ipia::turnVectors(fit.Place.Turn, gradient);
     image->GetPointData()->AddArray(gradient);
   }
   if (this->GenerateSupport)
@@ -708,7 +720,7 @@ int vtkIPIAImplicitFitter::RequestData(
     imageInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
   }
   image->SetExtent(extent);
-  image->SetOrigin(problem.Origin);
+  ipia::placeImage(problem.Frame, problem.Origin, image);
   image->SetSpacing(problem.SampleSpacing);
   const bool planar = problem.Dimension == 2, wide = this->OutputScalarType == VTK_DOUBLE;
   const bool sampled = planar ? (wide ? this->SampleImage<2, vtkDoubleArray>(image)

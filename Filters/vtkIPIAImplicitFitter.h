@@ -93,9 +93,16 @@
  * vtkImageBSplineInterpolator of degree 3 interpolates a spline without weights.
  *
  * ### Two dimensions
- * If all points lie in a plane perpendicular to an axis and their normals in that plane, f is a
- * bicubic spline in that plane and the image has one slice. Otherwise the fit is tricubic.
- * vtkContourFilter contours any slice; vtkFlyingEdges2D of VTK 9.1 takes each for one across z.
+ * If all points lie in a plane and their normals in that plane, f is a bicubic spline in that plane
+ * and the image has one slice. Otherwise the fit is tricubic. vtkContourFilter contours any slice
+ * along axes; vtkFlyingEdges2D of VTK 9.1 takes each for one across z.
+ *
+ * A plane that is tilted, perpendicular to no axis (within 1e-6 of the longest side), is turned by
+ * the smallest angle that brings an axis across it; there it is fitted, and placed back in space.
+ * The image and the control lattice then have a direction matrix, GridSize, SampleDimensions and
+ * ModelBoundsUsed are along its axes, ModelBounds must be unset, and f does not change across the
+ * plane. vtkFlyingEdges2D and vtkFlyingEdges3D draw in such an image, filters that do not know
+ * direction matrices draw in a wrong place.
  *
  * ### Errors
  * Refused with one error and empty outputs: no points, one point, all points equal or (in 3-D) on a
@@ -192,7 +199,7 @@ public:
 
   ///@{
   /**
-   * 2 or 3, or 0 (the default): 2 where points and normals lie in a plane perpendicular to an axis.
+   * 2 or 3, or 0 (the default): 2 where points and normals lie in a plane.
    */
   vtkSetClampMacro(Dimension, int, 0, 3);
   vtkGetMacro(Dimension, int);

@@ -17,6 +17,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
+#include "vtkMatrix3x3.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
 #include "vtkPointData.h"
@@ -253,12 +254,13 @@ int vtkIPIASurfaceReconstruction::PointType() const
 
 void vtkIPIASurfaceReconstruction::ContourImage(vtkPolyData* surface)
 {
-  // Contour filters write float points: contour at the origin, and move in double.
+  // Contour filters write float points: contour at the origin, and move (and turn) in double.
   vtkImageData* sampled = this->Fitter->GetOutput();
   const double none[3] = { 0, 0, 0 };
   vtkNew<vtkImageData> image;
   image->ShallowCopy(sampled);
   image->SetOrigin(none);
+  image->SetDirectionMatrix(vtkNew<vtkMatrix3x3>());
   if (sampled->GetDataDimension() == 3)
   {
     contourInSpace(image, surface);
@@ -274,6 +276,7 @@ void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, vtkImag
   vtkPoints* before = surface->GetPoints();
   const vtkIdType n = before->GetNumberOfPoints();
   const double* origin = sampled->GetOrigin();
+  const double* direction = sampled->GetDirectionMatrix()->GetData();
   const ipia::NewtonStep newton(sampled->GetSpacing());
   vtkNew<vtkPoints> after;
   after->SetDataType(this->PointType());
@@ -290,6 +293,7 @@ void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, vtkImag
       {
         double x[3], g[3];
         before->GetPoint(i, x);
+        vtkMatrix3x3::MultiplyPoint(direction, x, x);
         vtkMath::Add(x, origin, x);
         const double f = function->EvaluateFunctionAndGradient(x, g);
         const double slope = vtkMath::Norm(g);

@@ -5,7 +5,7 @@
  *
  * vtkIPIASurfaceReconstruction fits an implicit B-spline function to oriented points with
  * vtkIPIAImplicitFitter and extracts its zero set: a surface in 3-D, polylines in 2-D (points and
- * normals in a plane perpendicular to an axis).
+ * normals in a plane).
  *
  * @code
  *   vtkNew<vtkIPIASurfaceReconstruction> reconstruction;
