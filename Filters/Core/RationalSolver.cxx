@@ -19,6 +19,53 @@ constexpr int MostHalvings = 60;
 /// Growth of sqrt(E) that rounding may cause.
 constexpr double RoundingOfEnergy = 1e-13;
 
+/// hasPositiveDenominators() of the knots that the coefficients [begin, end) are centred at.
+template <int Dim>
+bool hasPositiveDenominators(
+  const Lattice<Dim>& lattice, const Vector& weights, std::int64_t begin, std::int64_t end)
+{
+  constexpr std::array<double, 3> basis = { 1. / 6, 4. / 6, 1. / 6 };
+  constexpr int count = Dim == 2 ? 9 : 27;
+  constexpr double middle = Dim == 2 ? 16. / 36 : 64. / 216;
+  std::array<std::int64_t, count> offsets{};
+  std::array<double, count> products{};
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    std::int64_t stride = 1;
+    products[i] = 1;
+    for (std::size_t a = 0, rest = i; a < Dim; ++a, rest /= 3)
+    {
+      offsets[i] += (static_cast<std::int64_t>(rest % 3) - 1) * stride;
+      products[i] *= basis[rest % 3];
+      stride *= lattice.Size[a];
+    }
+  }
+  for (std::int64_t k = begin; k < end; ++k)
+  {
+    // Where its own coefficient does, the others of a knot need not be looked at.
+    if (weights[k] * middle >= SmallestDenominator)
+    {
+      continue;
+    }
+    bool isKnot = true;
+    for (std::int64_t a = 0, rest = k; a < Dim; rest /= lattice.Size[a], ++a)
+    {
+      const std::int64_t at = rest % lattice.Size[a];
+      isKnot = isKnot && at > 0 && at + 1 < lattice.Size[a];
+    }
+    double denominator = 0;
+    for (std::size_t i = 0; isKnot && i < count; ++i)
+    {
+      denominator += products[i] * weights[k + offsets[i]];
+    }
+    if (isKnot && !(denominator >= SmallestDenominator))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// The state of the iteration, and its two steps.
 template <int Dim>
 class RationalIteration
@@ -38,6 +85,7 @@ public:
     this->Pairs.resize(2, this->C.size());
     this->Pairs.row(0) = this->C;
     this->Pairs.row(1).setOnes();
+    this->LargestCoefficient = this->C.cwiseAbs().maxCoeff();
     this->Operator.coefficientSums(this->Pairs, this->CoefficientSums);
     this->chooseStepSize();
     this->evaluate();
@@ -85,14 +133,16 @@ public:
   /// Leaves the sums for the step of the coefficients with the new weights.
   void stepWeights()
   {
+    const double bound =
+      energyBound(this->RowEnergy, this->WeightSum, this->LargestCoefficient, RoundingOfEnergy);
     double tau = this->Tau;
-    for (int halvings = 0; halvings <= MostHalvings; ++halvings, tau /= 2)
+    int halvings = 0;
+    for (; !this->tryWeights(tau, bound, halvings < this->Halvings); ++halvings)
     {
-      if (this->tryWeights(halvings < MostHalvings ? tau : 0))
-      {
-        break;
-      }
+      tau = halvings + 1 < MostHalvings ? tau / 2 : 0;
     }
+    this->Halvings = halvings;
+    this->SmallestTau = std::min(this->SmallestTau, tau);
     std::swap(this->W, this->NewW);
   }
 
@@ -106,15 +156,18 @@ public:
       this->Vectors.add(
         -this->Mu * this->Oscillation.kappa(), this->Oscillation.laplacian(), this->C);
     }
-    this->Operator.touched().forEach(this->Operator.threads(),
-      [&](std::int64_t begin, std::int64_t end)
+    this->LargestCoefficient = this->Operator.touched().reduce(
+      this->Operator.threads(), 0.0,
+      [&](std::int64_t begin, std::int64_t end, double& partial)
       {
         for (std::int64_t i = begin; i < end; ++i)
         {
           this->C[i] += this->Mu * (this->W[i] * this->CoefficientSums(0, i));
           this->Pairs(0, i) = this->W[i] * this->C[i];
+          partial = std::max(partial, std::abs(this->C[i]));
         }
-      });
+      },
+      [](double a, double b) { return std::max(a, b); });
     this->evaluate();
     return !energyRose(before, this->RowEnergy + this->Oscillation.descendedEnergy(),
       this->WeightSum + this->Oscillation.sumOfWeights(), this->C);
@@ -142,9 +195,14 @@ private:
     this->Oscillation.update(this->C);
   }
 
-  /// Takes the step tau from W to NewW. Returns whether no denominator becomes 0 and E does not
-  /// grow; then the sums, the pairs and the energy are those of the new weights.
-  bool tryWeights(double tau)
+  /**
+   * Takes the step tau from W to NewW. Returns whether no denominator becomes 0 and E does not pass
+   * the bound, which a step of 0 does not have; then the sums, the pairs and the energy are those
+   * of the new weights.
+   *
+   * @param isDoubtful  finds the energy first, since the sums are probably of no use
+   */
+  bool tryWeights(double tau, double bound, bool isDoubtful)
   {
     const double smallest = this->Operator.touched().reduce(
       this->Operator.threads(), Infinity,
@@ -162,29 +220,47 @@ private:
         }
       },
       [](double a, double b) { return std::min(a, b); });
-    if (tau > 0 && smallest < SmallestDenominator &&
-      !hasPositiveDenominators(this->Operator.lattice(), this->NewW))
+    if (tau > 0 && smallest < SmallestDenominator && !this->hasPositiveDenominatorsOfNewWeights())
     {
       return false;
     }
-    const double energy = this->Operator.coefficientSums(this->Pairs, this->CoefficientSums);
-    if (tau > 0 && energyRose(this->RowEnergy, energy, this->WeightSum, this->C, RoundingOfEnergy))
+    if (tau > 0 && isDoubtful && !(this->Operator.energy(this->Pairs, bound) <= bound))
+    {
+      return false;
+    }
+    const double energy = this->Operator.coefficientSums(
+      this->Pairs, this->CoefficientSums, tau > 0 ? bound : Infinity);
+    if (tau > 0 && !(energy <= bound))
     {
       return false;
     }
     this->RowEnergy = energy;
-    this->SmallestTau = std::min(this->SmallestTau, tau);
     return true;
   }
 
-  const RationalOperator<Dim> Operator;
+  bool hasPositiveDenominatorsOfNewWeights() const
+  {
+    return this->Operator.touched().reduce(
+             this->Operator.threads(), 1,
+             [&](std::int64_t begin, std::int64_t end, double& partial)
+             {
+               if (!hasPositiveDenominators(this->Operator.lattice(), this->NewW, begin, end))
+               {
+                 partial = 0;
+               }
+             },
+             [](double a, double b) { return std::min(a, b); }) == 1;
+  }
+
+  RationalOperator<Dim> Operator;
   const SolverOptions& Options;
   const double Tau;
   Vector& C;
   const ChunkedVectors Vectors;
   OscillationTerm<Dim> Oscillation;
   const double WeightSum;
-  double RowEnergy = 0, Mu = 0, SmallestTau = Infinity;
+  double RowEnergy = 0, Mu = 0, SmallestTau = Infinity, LargestCoefficient = 0;
+  int Halvings = 0; // of tau, in the last step
   Vector W, NewW;
   CoefficientPairs Pairs;           // w_i c_i and w_i
   CoefficientPairs CoefficientSums; // RationalOperator::coefficientSums
@@ -195,41 +271,7 @@ private:
 template <int Dim>
 bool hasPositiveDenominators(const Lattice<Dim>& lattice, const Vector& weights)
 {
-  constexpr std::array<double, 3> basis = { 1. / 6, 4. / 6, 1. / 6 };
-  constexpr int count = Dim == 2 ? 9 : 27;
-  Index<Dim> knots, at;
-  std::int64_t total = 1;
-  for (int a = 0; a < Dim; ++a)
-  {
-    knots[a] = lattice.cells(a) + 1;
-    total *= knots[a];
-  }
-  for (std::int64_t k = 0; k < total; ++k)
-  {
-    for (std::int64_t a = 0, rest = k; a < Dim; rest /= knots[a], ++a)
-    {
-      at[static_cast<std::size_t>(a)] = rest % knots[static_cast<std::size_t>(a)];
-    }
-    const std::int64_t first = lattice.coefficientIndex(at);
-    double denominator = 0;
-    for (int i = 0; i < count; ++i)
-    {
-      std::int64_t index = first, stride = 1;
-      double product = 1;
-      for (int a = 0, rest = i; a < Dim; ++a, rest /= 3)
-      {
-        index += rest % 3 * stride;
-        stride *= lattice.Size[a];
-        product *= basis[static_cast<std::size_t>(rest % 3)];
-      }
-      denominator += product * weights[index];
-    }
-    if (!(denominator >= SmallestDenominator))
-    {
-      return false;
-    }
-  }
-  return true;
+  return hasPositiveDenominators(lattice, weights, 0, lattice.numberOfCoefficients());
 }
 
 template <int Dim>

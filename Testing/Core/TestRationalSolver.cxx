@@ -217,14 +217,16 @@ TYPED_TEST(RationalSolver, WeightGradientAgreesWithCentralDifferences)
   const Vector c = random.vector(n, -1, 1);
   Vector w = random.vector(n, 0.5, 2);
   CoefficientPairs pairs(2, n), sums;
-  const RationalOperator<Dim> rational(rows, 1);
+  RationalOperator<Dim> rational(rows, 1);
   const auto energy = [&]
   {
     pairs.row(0) = c.cwiseProduct(w);
     pairs.row(1) = w;
-    return rational.weightSums(pairs, sums);
+    return rational.energy(pairs);
   };
-  energy();
+  const double middleEnergy = energy();
+  EXPECT_DOUBLE_EQ(rational.coefficientSums(pairs, sums), middleEnergy);
+  EXPECT_DOUBLE_EQ(rational.weightSums(pairs, sums), middleEnergy);
   const Vector gradient =
     2 * (c.cwiseProduct(Vector(sums.row(0).transpose())) - Vector(sums.row(1).transpose()));
   const double step = 1e-4;
