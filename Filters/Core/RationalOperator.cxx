@@ -28,12 +28,13 @@ IPIA_INLINE void load(const double* from, Vector8& v)
 template <int Dim>
 struct SweepData
 {
-  const RowPacket<Dim>* Packets;
+  const ConstraintRow<Dim>* Rows;
   const typename RowBatches<Dim>::Part* Parts;
+  const std::int64_t* BatchBegin; // in Parts
   std::array<std::int64_t, 2> Stride;
   const double* Pairs;
   double* Sums;
-  double* InverseDenominators; // of the rows in the order of the packets
+  double* InverseDenominators; // RowBatches::MostRows a batch
 };
 
 /**
@@ -45,11 +46,10 @@ template <int Dim, Sums Kind>
 struct RationalKernel
 {
   using Part = typename RowBatches<Dim>::Part;
-  using Batch = typename RowBatches<Dim>::Batch;
   static constexpr int Across = Dim == 3 ? Order : 1; // lines of a layer, one behind the other along z
   static constexpr int Lines = Order * Across;        // layers follow each other along y
   static constexpr bool UsesNumeratorsAlone = Dim == 3 && Kind == Sums::Weights;
-  static constexpr int PacketSize = RowPacket<Dim>::Size;
+  static constexpr int Lanes = 8; // of a vector
   static constexpr int BatchSize = RowBatches<Dim>::MostRows;
 
   /// What the phases hand on, of each row.
@@ -58,12 +58,13 @@ struct RationalKernel
     alignas(64) double Products[BatchSize][Lines]; // B_j(y) B_k(z)
     Vector8 AlongX[BatchSize];                     // B(x), each twice
     Vector8 Gathered[BatchSize];                   // lanes to be added up
+    alignas(64) double Target[BatchSize], Weight[BatchSize];
     // What it adds to the two sums, with room to read a whole vector from the last on.
-    alignas(64) double Terms[2 * BatchSize + PacketSize];
+    alignas(64) double Terms[2 * BatchSize + Lanes];
   };
 
-  static IPIA_INLINE void computeBases(
-    const RowPacket<Dim>& rows, double (*products)[Lines], Vector8* alongX)
+  static IPIA_INLINE void readRows(
+    const Part* begin, const Part* end, const SweepData<Dim>& data, Workspace& work)
   {
     // The cubic basis as a polynomial in t (see CubicBasis.h).
     constexpr Vector8 basis0 = { 1. / 6, 4. / 6, 1. / 6, 0, 1. / 6, 4. / 6, 1. / 6, 0 };
@@ -74,22 +75,30 @@ struct RationalKernel
     constexpr Vector8 twice1 = { -.5, -.5, 0, 0, .5, .5, 0, 0 };
     constexpr Vector8 twice2 = { .5, .5, -1, -1, .5, .5, 0, 0 };
     constexpr Vector8 twice3 = { -1. / 6, -1. / 6, .5, .5, -.5, -.5, 1. / 6, 1. / 6 };
-    for (int r = 0; r < PacketSize; ++r)
+    for (auto part = begin; part != end; ++part)
     {
-      const double x = rows.T[0][r], y = rows.T[1][r], z = rows.T[Dim - 1][r];
-      alongX[r] = twice0 + x * (twice1 + x * (twice2 + x * twice3));
-      const Vector8 t = { y, y, y, y, z, z, z, z };
-      const Vector8 yz = basis0 + t * (basis1 + t * (basis2 + t * basis3));
-      if (Dim == 2)
+      const ConstraintRow<Dim>* row = data.Rows + part->Row;
+      for (int r = part->Begin; r < part->End; ++r, ++row)
       {
-        std::memcpy(products[r], &yz, sizeof(products[r]));
-      }
-      else
-      {
-        const Vector8 zz = __builtin_shufflevector(yz, yz, 4, 5, 6, 7, 4, 5, 6, 7);
-        const Vector8 both[2] = { __builtin_shufflevector(yz, yz, 0, 0, 0, 0, 1, 1, 1, 1) * zz,
-          __builtin_shufflevector(yz, yz, 2, 2, 2, 2, 3, 3, 3, 3) * zz };
-        std::memcpy(products[r], both, sizeof(products[r]));
+        // Reading a batch at a time is too jerky for the processor to see where it leads.
+        __builtin_prefetch(row + BatchSize);
+        const double x = row->T[0], y = row->T[1], z = row->T[Dim - 1];
+        work.AlongX[r] = twice0 + x * (twice1 + x * (twice2 + x * twice3));
+        const Vector8 t = { y, y, y, y, z, z, z, z };
+        const Vector8 yz = basis0 + t * (basis1 + t * (basis2 + t * basis3));
+        if (Dim == 2)
+        {
+          std::memcpy(work.Products[r], &yz, sizeof(work.Products[r]));
+        }
+        else
+        {
+          const Vector8 zz = __builtin_shufflevector(yz, yz, 4, 5, 6, 7, 4, 5, 6, 7);
+          const Vector8 both[2] = { __builtin_shufflevector(yz, yz, 0, 0, 0, 0, 1, 1, 1, 1) * zz,
+            __builtin_shufflevector(yz, yz, 2, 2, 2, 2, 3, 3, 3, 3) * zz };
+          std::memcpy(work.Products[r], both, sizeof(work.Products[r]));
+        }
+        work.Target[r] = row->Target;
+        work.Weight[r] = row->Weight;
       }
     }
   }
@@ -191,10 +200,10 @@ struct RationalKernel
     }
   }
 
-  /// What each row of a packet adds to the sums, and to the energy.
-  static IPIA_INLINE void evaluate(const RowPacket<Dim>& rows, const Vector8* gathered,
-    double* inverses, double* terms, Vector8& energy)
+  /// What each of the rows [begin, begin + Lanes) adds to the sums, and to the energy.
+  static IPIA_INLINE void evaluate(int begin, double* inverses, Workspace& work, Vector8& energy)
   {
+    const Vector8* const gathered = work.Gathered + begin;
     // Lanes of two rows, then of four, then of eight.
     Vector8 two[4], four[2];
     for (int i = 0; i < 4; ++i)
@@ -212,11 +221,11 @@ struct RationalKernel
     const Vector8 even = __builtin_shufflevector(four[0], four[1], 0, 2, 4, 6, 8, 10, 12, 14);
     const Vector8 odd = __builtin_shufflevector(four[0], four[1], 1, 3, 5, 7, 9, 11, 13, 15);
     Vector8 target, weight, inverse;
-    load(rows.Target, target);
-    load(rows.Weight, weight);
+    load(work.Target + begin, target);
+    load(work.Weight + begin, weight);
     if (Kind == Sums::Weights)
     {
-      load(inverses, inverse);
+      load(inverses + begin, inverse);
     }
     else
     {
@@ -233,11 +242,11 @@ struct RationalKernel
       const Vector8 second = Kind == Sums::Coefficients ? scaled : first * value;
       const Vector8 both[2] = { __builtin_shufflevector(first, second, 0, 8, 1, 9, 2, 10, 3, 11),
         __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15) };
-      std::memcpy(terms, both, sizeof(both));
+      std::memcpy(work.Terms + 2 * begin, both, sizeof(both));
     }
     if (Kind == Sums::Coefficients)
     {
-      std::memcpy(inverses, &inverse, sizeof(inverse));
+      std::memcpy(inverses + begin, &inverse, sizeof(inverse));
     }
   }
 
@@ -297,42 +306,43 @@ struct RationalKernel
     }
   }
 
+  /// The batches [begin, end).
   static IPIA_INLINE void run(
-    const SweepData<Dim>& data, const Batch* begin, const Batch* end, double& energy)
+    const SweepData<Dim>& data, std::int64_t begin, std::int64_t end, double& energy)
   {
     Vector8 energies{};
     Workspace work;
-    for (auto batch = begin; batch != end; ++batch)
+    for (std::int64_t batch = begin; batch < end; ++batch)
     {
-      const std::int64_t first = batch[0].Packet;
-      const auto packets = static_cast<int>(batch[1].Packet - first);
-      const Part *const part = data.Parts + batch[0].Part, *const last = data.Parts + batch[1].Part;
-      for (int p = 0; p < packets; ++p)
-      {
-        computeBases(data.Packets[first + p], work.Products + p * PacketSize,
-          work.AlongX + p * PacketSize);
-      }
+      const Part* const first = data.Parts + data.BatchBegin[batch];
+      const Part* const last = data.Parts + data.BatchBegin[batch + 1];
+      const int count = last[-1].End;
+      readRows(first, last, data, work);
       if constexpr (UsesNumeratorsAlone)
       {
-        gatherNumerators(part, last, data, work);
+        gatherNumerators(first, last, data, work);
       }
       else
       {
-        gatherPairs(part, last, data, work);
+        gatherPairs(first, last, data, work);
       }
-      for (int p = 0; p < packets; ++p)
+      // Rows that fill the last vector.
+      for (int r = count; r % Lanes != 0; ++r)
       {
-        evaluate(data.Packets[first + p], work.Gathered + p * PacketSize,
-          data.InverseDenominators + (first + p) * PacketSize, work.Terms + 2 * p * PacketSize,
-          energies);
+        work.Gathered[r] = Vector8{ 0, 1 };
+        work.Target[r] = work.Weight[r] = 0;
+      }
+      for (int r = 0; r < count; r += Lanes)
+      {
+        evaluate(r, data.InverseDenominators + batch * BatchSize, work, energies);
       }
       if (Kind != Sums::None)
       {
-        scatter(part, last, data, work);
+        scatter(first, last, data, work);
       }
     }
     energy = 0;
-    for (int lane = 0; lane < PacketSize; ++lane)
+    for (int lane = 0; lane < Lanes; ++lane)
     {
       energy += energies[lane];
     }
@@ -370,7 +380,7 @@ RationalOperator<Dim>::RationalOperator(const ConstraintRows<Dim>& rows, int thr
   , Batches(rows)
   , Touched(rows)
   , Threads(resolveThreads(threads))
-  , InverseDenominators(Batches.size())
+  , InverseDenominators(Batches.numberOfBatches() * RowBatches<Dim>::MostRows)
 {
 }
 
@@ -392,18 +402,18 @@ double RationalOperator<Dim>::sweep(
   const CoefficientPairs& pairs, double* sums, double bound)
 {
   const Lattice<Dim>& lattice = this->lattice();
-  const SweepData<Dim> data = { this->Batches.packets(), this->Batches.parts(),
-    { lattice.Size[0], lattice.Size[0] * lattice.Size[1] }, pairs.data(), sums,
+  const SweepData<Dim> data = { this->Rows.rows(), this->Batches.parts(),
+    this->Batches.batchBegin(), { lattice.Size[0], lattice.Size[0] * lattice.Size[1] }, pairs.data(), sums,
     this->InverseDenominators.data() };
   BoundedEnergy sum(bound);
-  const double energy = sweepTiles(this->Batches, this->Threads,
+  const double energy = sweepTiles(this->Rows, this->Threads,
     [&](std::int64_t tile)
     {
       double ofTile = 0;
       if (!sum.isPassed())
       {
-        dispatch<Kernel>(data, this->Batches.batches() + this->Batches.tileBegin(tile),
-          this->Batches.batches() + this->Batches.tileBegin(tile + 1), ofTile);
+        dispatch<Kernel>(
+          data, this->Batches.tileBegin(tile), this->Batches.tileBegin(tile + 1), ofTile);
         sum.add(ofTile);
       }
       return ofTile;

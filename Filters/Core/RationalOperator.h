@@ -29,7 +29,10 @@ template <int Dim>
 class RationalOperator
 {
 public:
-  /// @param threads  0: OpenMP's own choice. The rows must outlive the operator.
+  /**
+   * @param rows     must outlive the operator; fastest with bars along y
+   * @param threads  0: OpenMP's own choice
+   */
   explicit RationalOperator(const ConstraintRows<Dim>& rows, int threads = 0);
 
   /**
@@ -78,7 +81,7 @@ private:
   const RowBatches<Dim> Batches;
   const TouchedCoefficients Touched;
   int Threads;
-  Vector InverseDenominators; // of the rows of Batches
+  Vector InverseDenominators; // of the rows in the order of Batches
 };
 }
 
