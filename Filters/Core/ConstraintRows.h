@@ -25,8 +25,8 @@ struct ConstraintRow
 /**
  * Rows sorted by knot cell, and the cells grouped in tiles for threads.
  *
- * A tile is a bar along one axis, x or y, of TileWidth cells on every other. Tiles of one colour touch
- * disjoint coefficients, so the threads that work on them need no lock, and every coefficient
+ * A tile is a bar along one axis, x or y, of TileWidth cells on every other. Tiles of one colour
+ * touch disjoint coefficients, so the threads that work on them need no lock, and every coefficient
  * collects its contributions in the same order whatever their number.
  */
 template <int Dim>

@@ -9,8 +9,7 @@ namespace ipia
 namespace
 {
 template <int Dim>
-ConstraintRows<Dim> makeRows(
-  const Lattice<Dim>& lattice, const FitInput<Dim>& input, int barAxis)
+ConstraintRows<Dim> makeRows(const Lattice<Dim>& lattice, const FitInput<Dim>& input, int barAxis)
 {
   const std::int64_t n = input.Positions.cols();
   const std::int64_t most = n * (input.InwardDistance.size() ? 3 : 2) + input.ExtraPositions.cols();

@@ -46,8 +46,9 @@ template <int Dim, Sums Kind>
 struct RationalKernel
 {
   using Part = typename RowBatches<Dim>::Part;
-  static constexpr int Across = Dim == 3 ? Order : 1; // lines of a layer, one behind the other along z
-  static constexpr int Lines = Order * Across;        // layers follow each other along y
+  static constexpr int Across =
+    Dim == 3 ? Order : 1;                      // lines of a layer, one behind the other along z
+  static constexpr int Lines = Order * Across; // layers follow each other along y
   static constexpr bool UsesNumeratorsAlone = Dim == 3 && Kind == Sums::Weights;
   static constexpr int Lanes = 8; // of a vector
   static constexpr int BatchSize = RowBatches<Dim>::MostRows;
@@ -385,26 +386,13 @@ RationalOperator<Dim>::RationalOperator(const ConstraintRows<Dim>& rows, int thr
 }
 
 template <int Dim>
-void RationalOperator<Dim>::clear(CoefficientPairs& sums) const
-{
-  const std::int64_t n = this->lattice().numberOfCoefficients();
-  if (sums.cols() != n)
-  {
-    sums.setZero(2, n);
-  }
-  this->Touched.forEach(this->Threads,
-    [&](std::int64_t begin, std::int64_t end) { sums.middleCols(begin, end - begin).setZero(); });
-}
-
-template <int Dim>
 template <typename Kernel>
-double RationalOperator<Dim>::sweep(
-  const CoefficientPairs& pairs, double* sums, double bound)
+double RationalOperator<Dim>::sweep(const CoefficientPairs& pairs, double* sums, double bound)
 {
   const Lattice<Dim>& lattice = this->lattice();
   const SweepData<Dim> data = { this->Rows.rows(), this->Batches.parts(),
-    this->Batches.batchBegin(), { lattice.Size[0], lattice.Size[0] * lattice.Size[1] }, pairs.data(), sums,
-    this->InverseDenominators.data() };
+    this->Batches.batchBegin(), { lattice.Size[0], lattice.Size[0] * lattice.Size[1] },
+    pairs.data(), sums, this->InverseDenominators.data() };
   BoundedEnergy sum(bound);
   const double energy = sweepTiles(this->Rows, this->Threads,
     [&](std::int64_t tile)
@@ -425,14 +413,12 @@ template <int Dim>
 double RationalOperator<Dim>::coefficientSums(
   const CoefficientPairs& pairs, CoefficientPairs& sums, double bound)
 {
-  this->clear(sums);
   return this->sweep<RationalKernel<Dim, Sums::Coefficients>>(pairs, sums.data(), bound);
 }
 
 template <int Dim>
 double RationalOperator<Dim>::weightSums(const CoefficientPairs& pairs, CoefficientPairs& sums)
 {
-  this->clear(sums);
   return this->sweep<RationalKernel<Dim, Sums::Weights>>(
     pairs, sums.data(), std::numeric_limits<double>::infinity());
 }

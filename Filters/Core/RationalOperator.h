@@ -39,9 +39,9 @@ public:
    * For the step of the coefficients. Keeps the denominators.
    *
    * @param pairs  a_i and w_i, with d_k > 0 at all rows
-   * @param sums   sum_k v_k (b_k - g_k) / d_k B_i(x_k), which times w_i is (D^T V (b - Dc))_i, and
-   *               sum_k v_k / d_k B_i(x_k), which times w_i is the row sum of D^T V D; of touched
-   *               coefficients
+   * @param sums   what is added to: sum_k v_k (b_k - g_k) / d_k B_i(x_k), which times w_i is
+   *               (D^T V (b - Dc))_i, and sum_k v_k / d_k B_i(x_k), which times w_i is the row sum
+   * of D^T V D
    * @param bound  the sweep ends where the energy is sure to be larger; the result is infinite
    *               then, sums and denominators are of no use
    * @return sum_k v_k (b_k - g_k)^2
@@ -53,9 +53,9 @@ public:
    * For the step of the weights, with the denominators of the last coefficientSums().
    *
    * @param pairs  a_i and w_i, with the w_i that coefficientSums() had
-   * @param sums   S_i = sum_k v_k (g_k - b_k) / d_k B_i(x_k) and
-   *               T_i = sum_k v_k (g_k - b_k) g_k / d_k B_i(x_k), of touched coefficients; then the
-   *               gradient of the energy by the weight w_i is 2 (c_i S_i - T_i)
+   * @param sums   what is added to: S_i = sum_k v_k (g_k - b_k) / d_k B_i(x_k) and
+   *               T_i = sum_k v_k (g_k - b_k) g_k / d_k B_i(x_k); then the gradient of the energy
+   * by the weight w_i is 2 (c_i S_i - T_i)
    * @return sum_k v_k (b_k - g_k)^2
    */
   double weightSums(const CoefficientPairs& pairs, CoefficientPairs& sums);
@@ -72,8 +72,6 @@ public:
   double sumOfRowWeights() const;
 
 private:
-  void clear(CoefficientPairs& sums) const;
-
   template <typename Kernel>
   double sweep(const CoefficientPairs& pairs, double* sums, double bound);
 

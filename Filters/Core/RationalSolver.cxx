@@ -86,6 +86,8 @@ public:
     this->Pairs.row(0) = this->C;
     this->Pairs.row(1).setOnes();
     this->LargestCoefficient = this->C.cwiseAbs().maxCoeff();
+    this->CoefficientSums.setZero(2, this->C.size());
+    this->WeightSums.setZero(2, this->C.size());
     this->Operator.coefficientSums(this->Pairs, this->CoefficientSums);
     this->chooseStepSize();
     this->evaluate();
@@ -96,17 +98,7 @@ public:
   {
     if (!this->Oscillation.isActive())
     {
-      return std::sqrt(this->Operator.touched().reduce(
-        this->Operator.threads(), 0.0,
-        [&](std::int64_t begin, std::int64_t end, double& partial)
-        {
-          for (std::int64_t i = begin; i < end; ++i)
-          {
-            const double g = this->W[i] * this->WeightSums(0, i);
-            partial += g * g;
-          }
-        },
-        [](double a, double b) { return a + b; }));
+      return std::sqrt(this->Proposed.SquaredNorm);
     }
     const Vector& laplacian = this->Oscillation.laplacian();
     const double kappa = this->Oscillation.kappa();
@@ -137,9 +129,11 @@ public:
       energyBound(this->RowEnergy, this->WeightSum, this->LargestCoefficient, RoundingOfEnergy);
     double tau = this->Tau;
     int halvings = 0;
-    for (; !this->tryWeights(tau, bound, halvings < this->Halvings); ++halvings)
+    while (!this->acceptWeights(tau, bound, halvings < this->Halvings))
     {
-      tau = halvings + 1 < MostHalvings ? tau / 2 : 0;
+      ++halvings;
+      tau = halvings < MostHalvings ? tau / 2 : 0;
+      this->proposeWeights(tau);
     }
     this->Halvings = halvings;
     this->SmallestTau = std::min(this->SmallestTau, tau);
@@ -164,6 +158,7 @@ public:
         {
           this->C[i] += this->Mu * (this->W[i] * this->CoefficientSums(0, i));
           this->Pairs(0, i) = this->W[i] * this->C[i];
+          this->WeightSums(0, i) = this->WeightSums(1, i) = 0;
           partial = std::max(partial, std::abs(this->C[i]));
         }
       },
@@ -174,6 +169,13 @@ public:
   }
 
 private:
+  /// New weights of a step, and what is found on the way.
+  struct Proposal
+  {
+    double SquaredNorm = 0; ///< ||D^T V r||^2, of the old weights
+    double SmallestWeight = Infinity;
+  };
+
   void chooseStepSize()
   {
     const double largest = this->Operator.touched().reduce(
@@ -189,38 +191,51 @@ private:
     this->Mu = this->Oscillation.chooseStepSize(largest, this->Options.StepSize);
   }
 
+  /// Of new coefficients, with the first step of the weights that will be tried.
   void evaluate()
   {
     this->RowEnergy = this->Operator.weightSums(this->Pairs, this->WeightSums);
     this->Oscillation.update(this->C);
+    this->proposeWeights(this->Tau);
   }
 
-  /**
-   * Takes the step tau from W to NewW. Returns whether no denominator becomes 0 and E does not pass
-   * the bound, which a step of 0 does not have; then the sums, the pairs and the energy are those
-   * of the new weights.
-   *
-   * @param isDoubtful  finds the energy first, since the sums are probably of no use
-   */
-  bool tryWeights(double tau, double bound, bool isDoubtful)
+  /// The step tau from W to NewW, with its pairs and room for its sums.
+  void proposeWeights(double tau)
   {
-    const double smallest = this->Operator.touched().reduce(
-      this->Operator.threads(), Infinity,
-      [&](std::int64_t begin, std::int64_t end, double& partial)
+    this->Proposed = this->Operator.touched().reduce(
+      this->Operator.threads(), Proposal{},
+      [&](std::int64_t begin, std::int64_t end, Proposal& partial)
       {
         for (std::int64_t i = begin; i < end; ++i)
         {
-          const double gradient =
-            2 * (this->C[i] * this->WeightSums(0, i) - this->WeightSums(1, i));
-          const double w = tau > 0 ? std::max(this->W[i] - tau * gradient, 0.0) : this->W[i];
+          const double c = this->C[i], before = this->W[i], sum = this->WeightSums(0, i);
+          const double gradient = 2 * (c * sum - this->WeightSums(1, i));
+          const double w = tau > 0 ? std::max(before - tau * gradient, 0.0) : before;
           this->NewW[i] = w;
-          this->Pairs(0, i) = w * this->C[i];
+          this->Pairs(0, i) = w * c;
           this->Pairs(1, i) = w;
-          partial = std::min(partial, w);
+          this->CoefficientSums(0, i) = this->CoefficientSums(1, i) = 0;
+          partial.SquaredNorm += (before * sum) * (before * sum);
+          partial.SmallestWeight = std::min(partial.SmallestWeight, w);
         }
       },
-      [](double a, double b) { return std::min(a, b); });
-    if (tau > 0 && smallest < SmallestDenominator && !this->hasPositiveDenominatorsOfNewWeights())
+      [](const Proposal& a, const Proposal& b)
+      {
+        return Proposal{ a.SquaredNorm + b.SquaredNorm,
+          std::min(a.SmallestWeight, b.SmallestWeight) };
+      });
+  }
+
+  /**
+   * Returns whether with the proposed weights no denominator becomes 0 and E does not pass the
+   * bound, which a step of 0 does not have; then sums and energy are those of the new weights.
+   *
+   * @param isDoubtful  finds the energy first, since the sums are probably of no use
+   */
+  bool acceptWeights(double tau, double bound, bool isDoubtful)
+  {
+    if (tau > 0 && this->Proposed.SmallestWeight < SmallestDenominator &&
+      !this->hasPositiveDenominatorsOfNewWeights())
     {
       return false;
     }
@@ -241,15 +256,12 @@ private:
   bool hasPositiveDenominatorsOfNewWeights() const
   {
     return this->Operator.touched().reduce(
-             this->Operator.threads(), 1,
-             [&](std::int64_t begin, std::int64_t end, double& partial)
-             {
-               if (!hasPositiveDenominators(this->Operator.lattice(), this->NewW, begin, end))
-               {
-                 partial = 0;
-               }
+             this->Operator.threads(), 0,
+             [&](std::int64_t begin, std::int64_t end, int& failures) {
+               failures +=
+                 hasPositiveDenominators(this->Operator.lattice(), this->NewW, begin, end) ? 0 : 1;
              },
-             [](double a, double b) { return std::min(a, b); }) == 1;
+             [](int a, int b) { return a + b; }) == 0;
   }
 
   RationalOperator<Dim> Operator;
@@ -261,6 +273,7 @@ private:
   const double WeightSum;
   double RowEnergy = 0, Mu = 0, SmallestTau = Infinity, LargestCoefficient = 0;
   int Halvings = 0; // of tau, in the last step
+  Proposal Proposed;
   Vector W, NewW;
   CoefficientPairs Pairs;           // w_i c_i and w_i
   CoefficientPairs CoefficientSums; // RationalOperator::coefficientSums

@@ -120,12 +120,11 @@ constexpr double RoundingOfValues = 64 * std::numeric_limits<double>::epsilon();
  * @param largestCoefficient  the largest |c_i|
  * @param slack               relative growth of sqrt(E) that does not count
  */
-inline double energyBound(
-  double before, double weightSum, double largestCoefficient, double slack)
+inline double energyBound(double before, double weightSum, double largestCoefficient, double slack)
 {
   // By the triangle inequality for sqrt(E), the weighted norm of the residuals.
-  const double norm = std::sqrt(before) * (1 + slack) +
-    std::sqrt(weightSum) * RoundingOfValues * largestCoefficient;
+  const double norm =
+    std::sqrt(before) * (1 + slack) + std::sqrt(weightSum) * RoundingOfValues * largestCoefficient;
   return std::max(before, norm * norm);
 }
 

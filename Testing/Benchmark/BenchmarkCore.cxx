@@ -293,8 +293,8 @@ void sweep(benchmark::State& state)
 }
 BENCHMARK(sweep)->Arg(5)->Arg(50)->UseManualTime()->Unit(benchmark::kMillisecond)->MinTime(2);
 
-/// An iteration of solveRational against one of solveLeastSquares on the same rows, each in the order
-/// that suits it, one thread, in turn; what goes before the first iteration is in both.
+/// An iteration of solveRational against one of solveLeastSquares on the same rows, each in the
+/// order that suits it, one thread, in turn; what goes before the first iteration is in both.
 void rationalIteration(benchmark::State& state)
 {
   const auto rowsPerCell = static_cast<int>(state.range(0));
