@@ -318,7 +318,7 @@ void rationalIteration(benchmark::State& state)
   state.counters["ns/row, B-spline"] = scale * median(splines);
   state.counters["ns/row, rational"] = scale * median(rationals);
   state.counters["times B-spline"] = median(ratios);
-  state.SetLabel("bound at 50 rows a cell: 2.5 times B-spline");
+  state.SetLabel("bound: 2.5 times B-spline");
 }
 BENCHMARK(rationalIteration)
   ->Arg(5)
