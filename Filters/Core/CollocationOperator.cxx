@@ -3,6 +3,7 @@
 
 #include "Dispatch.h"
 #include "Parallel.h"
+#include "TileSweep.h"
 
 #include <cstring>
 
@@ -136,27 +137,15 @@ double CollocationOperator<Dim>::sweep(const double* coefficients, Vector& resul
     [&](std::int64_t begin, std::int64_t end) { result.segment(begin, end - begin).setZero(); });
 
   const std::array<std::int64_t, 2> stride = { lattice.Size[0], lattice.Size[0] * lattice.Size[1] };
-  std::vector<double> energies(static_cast<std::size_t>(this->Rows.numberOfTiles()), 0.0);
   double* const out = result.data();
-#pragma omp parallel num_threads(this->Threads)
-  for (int colour = 0; colour < ConstraintRows<Dim>::NumberOfColours; ++colour)
-  {
-    const std::int64_t last = this->Rows.tileOfColour(colour + 1);
-#pragma omp for schedule(dynamic)
-    for (std::int64_t tile = this->Rows.tileOfColour(colour); tile < last; ++tile)
+  return sweepTiles(this->Rows, this->Threads,
+    [&](std::int64_t tile)
     {
       double energy = 0;
       dispatch<Kernel>(this->Rows.rows(), this->Rows.cells() + this->Rows.tileBegin(tile),
         this->Rows.cells() + this->Rows.tileBegin(tile + 1), stride, coefficients, out, energy);
-      energies[static_cast<std::size_t>(tile)] = energy;
-    }
-  }
-  double energy = 0;
-  for (double e : energies)
-  {
-    energy += e;
-  }
-  return energy;
+      return energy;
+    });
 }
 
 template <int Dim>

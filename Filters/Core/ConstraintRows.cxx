@@ -5,22 +5,29 @@ namespace ipia
 {
 namespace
 {
-/// The order of the knot cells: by colour, then tile, then cell within the tile, x fastest.
+/// The order of the knot cells: by colour, then tile, then cell within the tile, the axis of the
+/// bars fastest.
 template <int Dim>
 class TileOrder
 {
 public:
-  explicit TileOrder(const Lattice<Dim>& lattice)
-    : CellsAlongX(lattice.cells(0))
+  TileOrder(const Lattice<Dim>& lattice, int barAxis)
+    : BarAxis(static_cast<std::size_t>(barAxis))
+    , CellsAlongBar(lattice.cells(barAxis))
   {
     constexpr std::int64_t width = ConstraintRows<Dim>::TileWidth;
     std::int64_t tiles = 1;
-    this->CellsPerTile = this->CellsAlongX;
-    for (int a = 1; a < Dim; ++a)
+    this->CellsPerTile = this->CellsAlongBar;
+    std::size_t other = 0;
+    for (int a = 0; a < Dim; ++a)
     {
-      this->Tiles[a - 1] = (lattice.cells(a) + width - 1) / width;
-      tiles *= this->Tiles[a - 1];
-      this->CellsPerTile *= width;
+      if (a != barAxis)
+      {
+        this->Others[other] = static_cast<std::size_t>(a);
+        this->Tiles[other] = (lattice.cells(a) + width - 1) / width;
+        tiles *= this->Tiles[other++];
+        this->CellsPerTile *= width;
+      }
     }
     this->Rank.resize(static_cast<std::size_t>(tiles));
     std::int64_t rank = 0;
@@ -29,8 +36,8 @@ public:
       this->ColourBegin[static_cast<std::size_t>(colour)] = rank;
       for (std::int64_t t = 0; t < tiles; ++t)
       {
-        const std::int64_t y = t % this->Tiles[0], z = t / this->Tiles[0];
-        if ((y & 1) + 2 * (z & 1) == colour)
+        const std::int64_t first = t % this->Tiles[0], second = t / this->Tiles[0];
+        if ((first & 1) + 2 * (second & 1) == colour)
         {
           this->Rank[static_cast<std::size_t>(t)] = rank++;
         }
@@ -47,19 +54,22 @@ public:
   {
     constexpr std::int64_t width = ConstraintRows<Dim>::TileWidth;
     std::int64_t tile = 0, local = 0;
-    for (int a = Dim - 1; a >= 1; --a)
+    for (std::size_t other = Dim - 1; other-- > 0;)
     {
-      tile = tile * this->Tiles[a - 1] + cell[a] / width;
-      local = local * width + cell[a] % width;
+      const std::int64_t at = cell[this->Others[other]];
+      tile = tile * this->Tiles[other] + at / width;
+      local = local * width + at % width;
     }
     return this->Rank[static_cast<std::size_t>(tile)] * this->CellsPerTile +
-      local * this->CellsAlongX + cell[0];
+      local * this->CellsAlongBar + cell[this->BarAxis];
   }
 
 private:
-  std::int64_t CellsAlongX;
+  std::size_t BarAxis;
+  std::int64_t CellsAlongBar;
   std::int64_t CellsPerTile;
-  std::array<std::int64_t, Dim - 1> Tiles;
+  std::array<std::size_t, Dim - 1> Others; // the other axes
+  std::array<std::int64_t, Dim - 1> Tiles; // on them
   std::vector<std::int64_t> Rank;
   std::array<std::int64_t, ConstraintRows<Dim>::NumberOfColours + 1> ColourBegin;
 };
@@ -67,10 +77,10 @@ private:
 
 template <int Dim>
 ConstraintRows<Dim>::ConstraintRows(const Lattice<Dim>& lattice, const Points<Dim>& positions,
-  const Vector& targets, const Vector& weights)
+  const Vector& targets, const Vector& weights, int barAxis)
   : ControlLattice(lattice)
 {
-  const TileOrder<Dim> order(lattice);
+  const TileOrder<Dim> order(lattice, barAxis);
   const std::int64_t n = positions.cols();
 
   // Counting sort of the rows by the key of their cell.

@@ -25,8 +25,8 @@ struct ConstraintRow
 /**
  * Rows sorted by knot cell, and the cells grouped in tiles for threads.
  *
- * A tile is a bar along x of TileWidth cells on every other axis. Tiles of one colour touch
- * disjoint coefficients, so the threads that work on them need no lock, and every coefficient
+ * A tile is a bar along one axis, x or y, of TileWidth cells on every other. Tiles of one colour
+ * touch disjoint coefficients, so the threads that work on them need no lock, and every coefficient
  * collects its contributions in the same order whatever their number.
  */
 template <int Dim>
@@ -48,9 +48,10 @@ public:
    * @param positions  Dim x n, relative to the lower corner of the domain, inside it
    * @param targets    n values of f
    * @param weights    n weights >= 0, or empty for 1
+   * @param barAxis    the axis of the bars, 0 or 1
    */
   ConstraintRows(const Lattice<Dim>& lattice, const Points<Dim>& positions, const Vector& targets,
-    const Vector& weights);
+    const Vector& weights, int barAxis = 0);
 
   const Lattice<Dim>& lattice() const { return this->ControlLattice; }
   std::int64_t size() const { return static_cast<std::int64_t>(this->Rows.size()); }

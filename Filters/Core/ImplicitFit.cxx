@@ -9,7 +9,7 @@ namespace ipia
 namespace
 {
 template <int Dim>
-ConstraintRows<Dim> makeRows(const Lattice<Dim>& lattice, const FitInput<Dim>& input)
+ConstraintRows<Dim> makeRows(const Lattice<Dim>& lattice, const FitInput<Dim>& input, int barAxis)
 {
   const std::int64_t n = input.Positions.cols();
   const std::int64_t most = n * (input.InwardDistance.size() ? 3 : 2) + input.ExtraPositions.cols();
@@ -48,7 +48,7 @@ ConstraintRows<Dim> makeRows(const Lattice<Dim>& lattice, const FitInput<Dim>& i
     append(input.ExtraPositions.col(k), input.ExtraValues[k], 1);
   }
   return ConstraintRows<Dim>(
-    lattice, positions.leftCols(used), targets.head(used), weights.head(used));
+    lattice, positions.leftCols(used), targets.head(used), weights.head(used), barAxis);
 }
 
 /// How far beside its point a normal tells the sign of f, in knot spacings.
@@ -139,12 +139,13 @@ template <int Dim>
 FitResult<Dim> fitImplicit(const Lattice<Dim>& lattice, const FitInput<Dim>& input,
   const FitOptions& options, const ProgressCallback& progress)
 {
-  const ConstraintRows<Dim> rows = makeRows(lattice, input);
+  const bool isRational = options.Type == Basis::UniformRational;
+  const ConstraintRows<Dim> rows = makeRows(lattice, input, isRational ? 1 : 0);
   const CollocationOperator<Dim> collocation(rows, options.Threads);
 
   Vector coefficients = Vector::Zero(lattice.numberOfCoefficients());
   RationalResult solution; // without weights where the basis has none
-  if (options.Type == Basis::UniformRational)
+  if (isRational)
   {
     solution = solveRational(
       rows, options.Solver, options.Rational, options.Threads, coefficients, progress);

@@ -2,9 +2,9 @@
 #include "RationalOperator.h"
 
 #include "Dispatch.h"
-#include "Parallel.h"
+#include "TileSweep.h"
 
-#include <algorithm>
+#include <atomic>
 #include <cstring>
 
 namespace ipia
@@ -13,16 +13,29 @@ namespace
 {
 enum class Sums
 {
+  None,
   Coefficients, // v (b - g) / d and v / d
   Weights       // v (g - b) / d and v (g - b) g / d
 };
 
-/// Rows that go through each phase together: so many that no phase waits for the one before, so few
-/// that what they hand on stays in the nearest cache.
-constexpr int BatchSize = 32;
+/// By reference, since how a vector is returned depends on the instruction set.
+IPIA_INLINE void load(const double* from, Vector8& v)
+{
+  std::memcpy(&v, from, sizeof(v));
+}
 
-/// Rows whose lanes are added up together, and lanes of a vector.
-constexpr int GroupSize = 4, Lanes = 8;
+/// What a sweep reads and writes.
+template <int Dim>
+struct SweepData
+{
+  const ConstraintRow<Dim>* Rows;
+  const typename RowBatches<Dim>::Part* Parts;
+  const std::int64_t* BatchBegin; // in Parts
+  std::array<std::int64_t, 2> Stride;
+  const double* Pairs;
+  double* Sums;
+  double* InverseDenominators; // RowBatches::MostRows a batch
+};
 
 /**
  * All rows of one tile. A vector holds pairs of numbers of four coefficients along x, numerator and
@@ -32,195 +45,301 @@ constexpr int GroupSize = 4, Lanes = 8;
 template <int Dim, Sums Kind>
 struct RationalKernel
 {
-  static constexpr int Slices = Dim == 3 ? Order : 1;
-  static constexpr int Lines = Slices * Order;
-
-  /// Rows [Begin, End) of a batch, which share a cell.
-  struct Part
-  {
-    std::int64_t Coefficient; // the first of the cell's
-    int Begin, End;
-  };
+  using Part = typename RowBatches<Dim>::Part;
+  static constexpr int Across =
+    Dim == 3 ? Order : 1;                      // lines of a layer, one behind the other along z
+  static constexpr int Lines = Order * Across; // layers follow each other along y
+  static constexpr bool UsesNumeratorsAlone = Dim == 3 && Kind == Sums::Weights;
+  static constexpr int Lanes = 8; // of a vector
+  static constexpr int BatchSize = RowBatches<Dim>::MostRows;
 
   /// What the phases hand on, of each row.
-  struct Batch
+  struct Workspace
   {
-    Part Parts[BatchSize];
-    double Products[BatchSize][Lines]; // B_k(z) B_j(y)
-    Vector8 AlongX[BatchSize];         // B(x), each twice
-    double Values[2 * BatchSize];      // numerator and denominator
-    double Target[BatchSize], Weight[BatchSize];
-    double Terms[2 * BatchSize]; // what it adds to the two sums
+    alignas(64) double Products[BatchSize][Lines]; // B_j(y) B_k(z)
+    Vector8 AlongX[BatchSize];                     // B(x), each twice
+    Vector8 Gathered[BatchSize];                   // lanes to be added up
+    alignas(64) double Target[BatchSize], Weight[BatchSize];
+    // What it adds to the two sums, with room to read a whole vector from the last on.
+    alignas(64) double Terms[2 * BatchSize + Lanes];
   };
 
-  static IPIA_INLINE void computeBases(const ConstraintRow<Dim>* rows, int count, Batch& batch)
+  static IPIA_INLINE void readRows(
+    const Part* begin, const Part* end, const SweepData<Dim>& data, Workspace& work)
   {
+    // The cubic basis as a polynomial in t (see CubicBasis.h).
     constexpr Vector8 basis0 = { 1. / 6, 4. / 6, 1. / 6, 0, 1. / 6, 4. / 6, 1. / 6, 0 };
     constexpr Vector8 basis1 = { -.5, 0, .5, 0, -.5, 0, .5, 0 };
     constexpr Vector8 basis2 = { .5, -1, .5, 0, .5, -1, .5, 0 };
     constexpr Vector8 basis3 = { -1. / 6, .5, -.5, 1. / 6, -1. / 6, .5, -.5, 1. / 6 };
-    for (int r = 0; r < count; ++r)
+    constexpr Vector8 twice0 = { 1. / 6, 1. / 6, 4. / 6, 4. / 6, 1. / 6, 1. / 6, 0, 0 };
+    constexpr Vector8 twice1 = { -.5, -.5, 0, 0, .5, .5, 0, 0 };
+    constexpr Vector8 twice2 = { .5, .5, -1, -1, .5, .5, 0, 0 };
+    constexpr Vector8 twice3 = { -1. / 6, -1. / 6, .5, .5, -.5, -.5, 1. / 6, 1. / 6 };
+    for (auto part = begin; part != end; ++part)
     {
-      const double x = rows[r].T[0], y = rows[r].T[1];
-      const Vector8 t = { x, x, x, x, y, y, y, y };
-      const Vector8 xy = basis0 + t * (basis1 + t * (basis2 + t * basis3));
-      batch.AlongX[r] = __builtin_shufflevector(xy, xy, 0, 0, 1, 1, 2, 2, 3, 3);
-      if (Dim == 2)
+      const ConstraintRow<Dim>* row = data.Rows + part->Row;
+      for (int r = part->Begin; r < part->End; ++r, ++row)
       {
-        const Vector4 along = __builtin_shufflevector(xy, xy, 4, 5, 6, 7);
-        std::memcpy(batch.Products[r], &along, sizeof(along));
+        // Reading a batch at a time is too jerky for the processor to see where it leads.
+        __builtin_prefetch(row + BatchSize);
+        const double x = row->T[0], y = row->T[1], z = row->T[Dim - 1];
+        work.AlongX[r] = twice0 + x * (twice1 + x * (twice2 + x * twice3));
+        const Vector8 t = { y, y, y, y, z, z, z, z };
+        const Vector8 yz = basis0 + t * (basis1 + t * (basis2 + t * basis3));
+        if (Dim == 2)
+        {
+          std::memcpy(work.Products[r], &yz, sizeof(work.Products[r]));
+        }
+        else
+        {
+          const Vector8 zz = __builtin_shufflevector(yz, yz, 4, 5, 6, 7, 4, 5, 6, 7);
+          const Vector8 both[2] = { __builtin_shufflevector(yz, yz, 0, 0, 0, 0, 1, 1, 1, 1) * zz,
+            __builtin_shufflevector(yz, yz, 2, 2, 2, 2, 3, 3, 3, 3) * zz };
+          std::memcpy(work.Products[r], both, sizeof(work.Products[r]));
+        }
+        work.Target[r] = row->Target;
+        work.Weight[r] = row->Weight;
       }
-      else
-      {
-        const double u = rows[r].T[Dim - 1];
-        const Vector8 z = basis0 + u * (basis1 + u * (basis2 + u * basis3));
-        const Vector8 yy = __builtin_shufflevector(xy, xy, 4, 5, 6, 7, 4, 5, 6, 7);
-        const Vector8 products[2] = { __builtin_shufflevector(z, z, 0, 0, 0, 0, 1, 1, 1, 1) * yy,
-          __builtin_shufflevector(z, z, 2, 2, 2, 2, 3, 3, 3, 3) * yy };
-        std::memcpy(batch.Products[r], products, sizeof(batch.Products[r]));
-      }
-      batch.Target[r] = rows[r].Target;
-      batch.Weight[r] = rows[r].Weight;
     }
   }
 
   /// Where the pairs of line i of a cell begin.
-  static IPIA_INLINE std::int64_t lineOf(
-    const Part& part, const std::array<std::int64_t, 2>& stride, int i)
+  static IPIA_INLINE std::int64_t lineOf(const Part& part, const SweepData<Dim>& data, int i)
   {
-    return 2 * (part.Coefficient + i / Order * stride[1] + i % Order * stride[0]);
+    return 2 * (part.Coefficient + i / Across * data.Stride[0] + i % Across * data.Stride[1]);
   }
 
-  /// Even lanes of the sum add up to the numerator at row r, odd ones to the denominator.
-  static IPIA_INLINE void sumLines(
-    const Vector8 (&c)[Lines], const Batch& batch, int r, Vector8& sum)
+  /// Of each batch. Even lanes add up to the numerator, odd ones to the denominator.
+  static IPIA_INLINE void gatherPairs(
+    const Part* begin, const Part* end, const SweepData<Dim>& data, Workspace& work)
   {
-    Vector8 sums[2] = { batch.Products[r][0] * c[0], batch.Products[r][1] * c[1] };
-    for (int i = 2; i < Lines; ++i)
+    Vector8 c[Lines] = {};
+    for (auto part = begin; part != end; ++part)
     {
-      sums[i % 2] += batch.Products[r][i] * c[i];
-    }
-    sum = (sums[0] + sums[1]) * batch.AlongX[r];
-  }
-
-  static IPIA_INLINE void gather(
-    const Part& part, const std::array<std::int64_t, 2>& stride, const double* pairs, Batch& batch)
-  {
-    Vector8 c[Lines];
-    for (int i = 0; i < Lines; ++i)
-    {
-      std::memcpy(&c[i], pairs + lineOf(part, stride, i), sizeof(c[i]));
-    }
-    int r = part.Begin;
-    for (; r + GroupSize <= part.End; r += GroupSize)
-    {
-      Vector8 g[GroupSize];
-      for (int i = 0; i < GroupSize; ++i)
+      if (part->Follows)
       {
-        sumLines(c, batch, r + i, g[i]);
+        for (int i = 0; i < Lines - Across; ++i)
+        {
+          c[i] = c[i + Across];
+        }
       }
-      // Two pairs of lanes of two rows, then of four.
-      const Vector8 a = __builtin_shufflevector(g[0], g[1], 0, 1, 8, 9, 4, 5, 12, 13) +
-        __builtin_shufflevector(g[0], g[1], 2, 3, 10, 11, 6, 7, 14, 15);
-      const Vector8 b = __builtin_shufflevector(g[2], g[3], 0, 1, 8, 9, 4, 5, 12, 13) +
-        __builtin_shufflevector(g[2], g[3], 2, 3, 10, 11, 6, 7, 14, 15);
-      const Vector8 values = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
-        __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
-      std::memcpy(batch.Values + 2 * r, &values, sizeof(values));
-    }
-    for (; r < part.End; ++r)
-    {
-      Vector8 g;
-      sumLines(c, batch, r, g);
-      const Vector4 half =
-        __builtin_shufflevector(g, g, 0, 1, 2, 3) + __builtin_shufflevector(g, g, 4, 5, 6, 7);
-      batch.Values[2 * r] = half[0] + half[2];
-      batch.Values[2 * r + 1] = half[1] + half[3];
+      else
+      {
+        for (int i = 0; i < Lines - Across; ++i)
+        {
+          load(data.Pairs + lineOf(*part, data, i), c[i]);
+        }
+      }
+      for (int i = Lines - Across; i < Lines; ++i)
+      {
+        load(data.Pairs + lineOf(*part, data, i), c[i]);
+      }
+      for (int r = part->Begin; r < part->End; ++r)
+      {
+        Vector8 sums[2] = { work.Products[r][0] * c[0], work.Products[r][1] * c[1] };
+        for (int i = 2; i < Lines; ++i)
+        {
+          sums[i % 2] += work.Products[r][i] * c[i];
+        }
+        work.Gathered[r] = (sums[0] + sums[1]) * work.AlongX[r];
+      }
     }
   }
 
-  /// What each row adds to the sums, and to the energy; eight rows at a time.
-  static IPIA_INLINE void divide(int count, Batch& batch, Vector8& energy)
+  /// Of lines i and i + 1, one as even lanes, one as odd ones.
+  static IPIA_INLINE void loadNumerators(
+    const Part& part, const SweepData<Dim>& data, int i, Vector8& c)
   {
-    for (int r = count; r % Lanes != 0; ++r)
+    Vector8 a, b;
+    load(data.Pairs + lineOf(part, data, i), a);
+    load(data.Pairs + lineOf(part, data, i + 1), b);
+    c = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+  }
+
+  /// The same for numerators alone, in three dimensions. All lanes add up to one.
+  static IPIA_INLINE void gatherNumerators(
+    const Part* begin, const Part* end, const SweepData<Dim>& data, Workspace& work)
+  {
+    constexpr int vectors = Lines / 2, layer = Across / 2;
+    Vector8 c[vectors] = {};
+    for (auto part = begin; part != end; ++part)
     {
-      batch.Values[2 * r] = batch.Target[r] = batch.Weight[r] = 0;
-      batch.Values[2 * r + 1] = 1;
+      if (part->Follows)
+      {
+        for (int i = 0; i < vectors - layer; ++i)
+        {
+          c[i] = c[i + layer];
+        }
+      }
+      else
+      {
+        for (int i = 0; i < vectors - layer; ++i)
+        {
+          loadNumerators(*part, data, 2 * i, c[i]);
+        }
+      }
+      for (int i = vectors - layer; i < vectors; ++i)
+      {
+        loadNumerators(*part, data, 2 * i, c[i]);
+      }
+      for (int r = part->Begin; r < part->End; ++r)
+      {
+        Vector8 p[2];
+        load(work.Products[r], p[0]);
+        load(work.Products[r] + 8, p[1]);
+        Vector8 sums[2] = {};
+        for (int i = 0; i < 2; ++i)
+        {
+          sums[0] += __builtin_shufflevector(p[i], p[i], 0, 1, 0, 1, 0, 1, 0, 1) * c[4 * i];
+          sums[1] += __builtin_shufflevector(p[i], p[i], 2, 3, 2, 3, 2, 3, 2, 3) * c[4 * i + 1];
+          sums[0] += __builtin_shufflevector(p[i], p[i], 4, 5, 4, 5, 4, 5, 4, 5) * c[4 * i + 2];
+          sums[1] += __builtin_shufflevector(p[i], p[i], 6, 7, 6, 7, 6, 7, 6, 7) * c[4 * i + 3];
+        }
+        work.Gathered[r] = (sums[0] + sums[1]) * work.AlongX[r];
+      }
     }
-    for (int r = 0; r < count; r += Lanes)
+  }
+
+  /// What each of the rows [begin, begin + Lanes) adds to the sums, and to the energy.
+  static IPIA_INLINE void evaluate(int begin, double* inverses, Workspace& work, Vector8& energy)
+  {
+    const Vector8* const gathered = work.Gathered + begin;
+    // Lanes of two rows, then of four, then of eight.
+    Vector8 two[4], four[2];
+    for (int i = 0; i < 4; ++i)
     {
-      Vector8 values[2], target, weight;
-      std::memcpy(values, batch.Values + 2 * r, sizeof(values));
-      std::memcpy(&target, batch.Target + r, sizeof(target));
-      std::memcpy(&weight, batch.Weight + r, sizeof(weight));
-      const Vector8 inverse =
-        1 / __builtin_shufflevector(values[0], values[1], 1, 3, 5, 7, 9, 11, 13, 15);
-      const Vector8 value =
-        __builtin_shufflevector(values[0], values[1], 0, 2, 4, 6, 8, 10, 12, 14) * inverse;
-      const Vector8 difference = value - target, scaled = weight * inverse;
+      const Vector8 a = gathered[2 * i], b = gathered[2 * i + 1];
+      two[i] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
+        __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+    for (int i = 0; i < 2; ++i)
+    {
+      const Vector8 a = two[2 * i], b = two[2 * i + 1];
+      four[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
+        __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+    const Vector8 even = __builtin_shufflevector(four[0], four[1], 0, 2, 4, 6, 8, 10, 12, 14);
+    const Vector8 odd = __builtin_shufflevector(four[0], four[1], 1, 3, 5, 7, 9, 11, 13, 15);
+    Vector8 target, weight, inverse;
+    load(work.Target + begin, target);
+    load(work.Weight + begin, weight);
+    if (Kind == Sums::Weights)
+    {
+      load(inverses + begin, inverse);
+    }
+    else
+    {
+      inverse = 1 / odd;
+    }
+    const Vector8 numerator = UsesNumeratorsAlone ? even + odd : even;
+    const Vector8 value = numerator * inverse;
+    const Vector8 difference = value - target;
+    energy += weight * difference * difference;
+    if (Kind != Sums::None)
+    {
+      const Vector8 scaled = weight * inverse;
       const Vector8 first = scaled * (Kind == Sums::Coefficients ? -difference : difference);
       const Vector8 second = Kind == Sums::Coefficients ? scaled : first * value;
-      const Vector8 terms[2] = { __builtin_shufflevector(first, second, 0, 8, 1, 9, 2, 10, 3, 11),
+      const Vector8 both[2] = { __builtin_shufflevector(first, second, 0, 8, 1, 9, 2, 10, 3, 11),
         __builtin_shufflevector(first, second, 4, 12, 5, 13, 6, 14, 7, 15) };
-      std::memcpy(batch.Terms + 2 * r, terms, sizeof(terms));
-      energy += weight * difference * difference;
+      std::memcpy(work.Terms + 2 * begin, both, sizeof(both));
+    }
+    if (Kind == Sums::Coefficients)
+    {
+      std::memcpy(inverses + begin, &inverse, sizeof(inverse));
     }
   }
 
-  static IPIA_INLINE void scatter(
-    const Part& part, const std::array<std::int64_t, 2>& stride, const Batch& batch, double* sums)
+  static IPIA_INLINE void addLine(
+    const Part& part, const SweepData<Dim>& data, int i, const Vector8& add)
   {
-    Vector8 add[Lines];
-    for (int i = 0; i < Lines; ++i)
+    double* const at = data.Sums + lineOf(part, data, i);
+    Vector8 sum;
+    load(at, sum);
+    sum += add;
+    std::memcpy(at, &sum, sizeof(sum));
+  }
+
+  /// Of each batch.
+  static IPIA_INLINE void scatter(
+    const Part* begin, const Part* end, const SweepData<Dim>& data, const Workspace& work)
+  {
+    Vector8 add[Lines] = {};
+    for (auto part = begin; part != end; ++part)
     {
-      std::memcpy(&add[i], sums + lineOf(part, stride, i), sizeof(add[i]));
-    }
-    for (int r = part.Begin; r < part.End; ++r)
-    {
-      const double a = batch.Terms[2 * r], b = batch.Terms[2 * r + 1];
-      const Vector8 both = batch.AlongX[r] * Vector8{ a, b, a, b, a, b, a, b };
-      for (int i = 0; i < Lines; ++i)
+      for (int r = part->Begin; r < part->End; ++r)
       {
-        add[i] += batch.Products[r][i] * both;
+        Vector8 both;
+        load(work.Terms + 2 * r, both);
+        both = __builtin_shufflevector(both, both, 0, 1, 0, 1, 0, 1, 0, 1) * work.AlongX[r];
+        for (int i = 0; i < Lines; ++i)
+        {
+          add[i] += work.Products[r][i] * both;
+        }
+      }
+      for (int i = 0; i < Across; ++i)
+      {
+        addLine(*part, data, i, add[i]);
+      }
+      if (part + 1 != end && part[1].Follows)
+      {
+        for (int i = 0; i < Lines - Across; ++i)
+        {
+          add[i] = add[i + Across];
+        }
+        for (int i = Lines - Across; i < Lines; ++i)
+        {
+          add[i] = Vector8{};
+        }
+      }
+      else
+      {
+        for (int i = Across; i < Lines; ++i)
+        {
+          addLine(*part, data, i, add[i]);
+        }
+        for (int i = 0; i < Lines; ++i)
+        {
+          add[i] = Vector8{};
+        }
       }
     }
-    for (int i = 0; i < Lines; ++i)
-    {
-      std::memcpy(sums + lineOf(part, stride, i), &add[i], sizeof(add[i]));
-    }
   }
 
-  static IPIA_INLINE void run(const ConstraintRow<Dim>* rows,
-    const typename ConstraintRows<Dim>::Cell* begin, const typename ConstraintRows<Dim>::Cell* end,
-    const std::array<std::int64_t, 2>& stride, const double* pairs, double* sums, double& energy)
+  /// The batches [begin, end).
+  static IPIA_INLINE void run(
+    const SweepData<Dim>& data, std::int64_t begin, std::int64_t end, double& energy)
   {
     Vector8 energies{};
-    Batch batch;
-    std::int64_t row = begin->Begin;
-    for (auto cell = begin; cell != end;)
+    Workspace work;
+    for (std::int64_t batch = begin; batch < end; ++batch)
     {
-      const std::int64_t start = row;
-      int parts = 0, count = 0;
-      while (cell != end && count < BatchSize)
+      const Part* const first = data.Parts + data.BatchBegin[batch];
+      const Part* const last = data.Parts + data.BatchBegin[batch + 1];
+      const int count = last[-1].End;
+      readRows(first, last, data, work);
+      if constexpr (UsesNumeratorsAlone)
       {
-        const std::int64_t left = cell[1].Begin - row;
-        Part& part = batch.Parts[parts++];
-        part.Coefficient = cell->Coefficient;
-        part.Begin = count;
-        count += static_cast<int>(std::min<std::int64_t>(BatchSize - count, left));
-        part.End = count;
-        row = start + count;
-        cell += row == cell[1].Begin ? 1 : 0;
+        gatherNumerators(first, last, data, work);
       }
-      computeBases(rows + start, count, batch);
-      for (int p = 0; p < parts; ++p)
+      else
       {
-        gather(batch.Parts[p], stride, pairs, batch);
+        gatherPairs(first, last, data, work);
       }
-      divide(count, batch, energies);
-      for (int p = 0; p < parts; ++p)
+      // Rows that fill the last vector.
+      for (int r = count; r % Lanes != 0; ++r)
       {
-        scatter(batch.Parts[p], stride, batch, sums);
+        work.Gathered[r] = Vector8{ 0, 1 };
+        work.Target[r] = work.Weight[r] = 0;
+      }
+      for (int r = 0; r < count; r += Lanes)
+      {
+        evaluate(r, data.InverseDenominators + batch * BatchSize, work, energies);
+      }
+      if (Kind != Sums::None)
+      {
+        scatter(first, last, data, work);
       }
     }
     energy = 0;
@@ -230,64 +349,84 @@ struct RationalKernel
     }
   }
 };
+
+/// An energy that threads add to, to tell when a bound is passed.
+class BoundedEnergy
+{
+public:
+  explicit BoundedEnergy(double bound)
+    : Bound(bound * (1 + 1e-9)) // sums in another order are larger than the bound, too
+  {
+  }
+
+  bool isPassed() const { return this->Sum.load(std::memory_order_relaxed) > this->Bound; }
+
+  void add(double energy)
+  {
+    double sum = this->Sum.load(std::memory_order_relaxed);
+    while (!this->Sum.compare_exchange_weak(sum, sum + energy, std::memory_order_relaxed))
+    {
+    }
+  }
+
+private:
+  const double Bound;
+  std::atomic<double> Sum{ 0 };
+};
 }
 
 template <int Dim>
 RationalOperator<Dim>::RationalOperator(const ConstraintRows<Dim>& rows, int threads)
   : Rows(rows)
+  , Batches(rows)
   , Touched(rows)
   , Threads(resolveThreads(threads))
+  , InverseDenominators(Batches.numberOfBatches() * RowBatches<Dim>::MostRows)
 {
 }
 
 template <int Dim>
 template <typename Kernel>
-double RationalOperator<Dim>::sweep(const CoefficientPairs& pairs, CoefficientPairs& sums) const
+double RationalOperator<Dim>::sweep(const CoefficientPairs& pairs, double* sums, double bound)
 {
-  const Lattice<Dim>& lattice = this->Rows.lattice();
-  if (sums.cols() != lattice.numberOfCoefficients())
-  {
-    sums.setZero(2, lattice.numberOfCoefficients());
-  }
-  this->Touched.forEach(this->Threads,
-    [&](std::int64_t begin, std::int64_t end) { sums.middleCols(begin, end - begin).setZero(); });
-  const std::array<std::int64_t, 2> stride = { lattice.Size[0], lattice.Size[0] * lattice.Size[1] };
-  std::vector<double> energies(static_cast<std::size_t>(this->Rows.numberOfTiles()));
-  const double* const from = pairs.data();
-  double* const to = sums.data();
-#pragma omp parallel num_threads(this->Threads)
-  for (int colour = 0; colour < ConstraintRows<Dim>::NumberOfColours; ++colour)
-  {
-    const std::int64_t last = this->Rows.tileOfColour(colour + 1);
-#pragma omp for schedule(dynamic)
-    for (std::int64_t tile = this->Rows.tileOfColour(colour); tile < last; ++tile)
+  const Lattice<Dim>& lattice = this->lattice();
+  const SweepData<Dim> data = { this->Rows.rows(), this->Batches.parts(),
+    this->Batches.batchBegin(), { lattice.Size[0], lattice.Size[0] * lattice.Size[1] },
+    pairs.data(), sums, this->InverseDenominators.data() };
+  BoundedEnergy sum(bound);
+  const double energy = sweepTiles(this->Rows, this->Threads,
+    [&](std::int64_t tile)
     {
-      double energy = 0;
-      dispatch<Kernel>(this->Rows.rows(), this->Rows.cells() + this->Rows.tileBegin(tile),
-        this->Rows.cells() + this->Rows.tileBegin(tile + 1), stride, from, to, energy);
-      energies[static_cast<std::size_t>(tile)] = energy;
-    }
-  }
-  double energy = 0;
-  for (double e : energies)
-  {
-    energy += e;
-  }
-  return energy;
+      double ofTile = 0;
+      if (!sum.isPassed())
+      {
+        dispatch<Kernel>(
+          data, this->Batches.tileBegin(tile), this->Batches.tileBegin(tile + 1), ofTile);
+        sum.add(ofTile);
+      }
+      return ofTile;
+    });
+  return sum.isPassed() ? std::numeric_limits<double>::infinity() : energy;
 }
 
 template <int Dim>
 double RationalOperator<Dim>::coefficientSums(
-  const CoefficientPairs& pairs, CoefficientPairs& sums) const
+  const CoefficientPairs& pairs, CoefficientPairs& sums, double bound)
 {
-  return this->sweep<RationalKernel<Dim, Sums::Coefficients>>(pairs, sums);
+  return this->sweep<RationalKernel<Dim, Sums::Coefficients>>(pairs, sums.data(), bound);
 }
 
 template <int Dim>
-double RationalOperator<Dim>::weightSums(
-  const CoefficientPairs& pairs, CoefficientPairs& sums) const
+double RationalOperator<Dim>::weightSums(const CoefficientPairs& pairs, CoefficientPairs& sums)
 {
-  return this->sweep<RationalKernel<Dim, Sums::Weights>>(pairs, sums);
+  return this->sweep<RationalKernel<Dim, Sums::Weights>>(
+    pairs, sums.data(), std::numeric_limits<double>::infinity());
+}
+
+template <int Dim>
+double RationalOperator<Dim>::energy(const CoefficientPairs& pairs, double bound)
+{
+  return this->sweep<RationalKernel<Dim, Sums::None>>(pairs, nullptr, bound);
 }
 
 template <int Dim>

@@ -19,6 +19,53 @@ constexpr int MostHalvings = 60;
 /// Growth of sqrt(E) that rounding may cause.
 constexpr double RoundingOfEnergy = 1e-13;
 
+/// hasPositiveDenominators() of the knots that the coefficients [begin, end) are centred at.
+template <int Dim>
+bool hasPositiveDenominators(
+  const Lattice<Dim>& lattice, const Vector& weights, std::int64_t begin, std::int64_t end)
+{
+  constexpr std::array<double, 3> basis = { 1. / 6, 4. / 6, 1. / 6 };
+  constexpr int count = Dim == 2 ? 9 : 27;
+  constexpr double middle = Dim == 2 ? 16. / 36 : 64. / 216;
+  std::array<std::int64_t, count> offsets{};
+  std::array<double, count> products{};
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    std::int64_t stride = 1;
+    products[i] = 1;
+    for (std::size_t a = 0, rest = i; a < Dim; ++a, rest /= 3)
+    {
+      offsets[i] += (static_cast<std::int64_t>(rest % 3) - 1) * stride;
+      products[i] *= basis[rest % 3];
+      stride *= lattice.Size[a];
+    }
+  }
+  for (std::int64_t k = begin; k < end; ++k)
+  {
+    // Where its own coefficient does, the others of a knot need not be looked at.
+    if (weights[k] * middle >= SmallestDenominator)
+    {
+      continue;
+    }
+    bool isKnot = true;
+    for (std::int64_t a = 0, rest = k; a < Dim; rest /= lattice.Size[a], ++a)
+    {
+      const std::int64_t at = rest % lattice.Size[a];
+      isKnot = isKnot && at > 0 && at + 1 < lattice.Size[a];
+    }
+    double denominator = 0;
+    for (std::size_t i = 0; isKnot && i < count; ++i)
+    {
+      denominator += products[i] * weights[k + offsets[i]];
+    }
+    if (isKnot && !(denominator >= SmallestDenominator))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// The state of the iteration, and its two steps.
 template <int Dim>
 class RationalIteration
@@ -38,6 +85,9 @@ public:
     this->Pairs.resize(2, this->C.size());
     this->Pairs.row(0) = this->C;
     this->Pairs.row(1).setOnes();
+    this->LargestCoefficient = this->C.cwiseAbs().maxCoeff();
+    this->CoefficientSums.setZero(2, this->C.size());
+    this->WeightSums.setZero(2, this->C.size());
     this->Operator.coefficientSums(this->Pairs, this->CoefficientSums);
     this->chooseStepSize();
     this->evaluate();
@@ -48,17 +98,7 @@ public:
   {
     if (!this->Oscillation.isActive())
     {
-      return std::sqrt(this->Operator.touched().reduce(
-        this->Operator.threads(), 0.0,
-        [&](std::int64_t begin, std::int64_t end, double& partial)
-        {
-          for (std::int64_t i = begin; i < end; ++i)
-          {
-            const double g = this->W[i] * this->WeightSums(0, i);
-            partial += g * g;
-          }
-        },
-        [](double a, double b) { return a + b; }));
+      return std::sqrt(this->Proposed.SquaredNorm);
     }
     const Vector& laplacian = this->Oscillation.laplacian();
     const double kappa = this->Oscillation.kappa();
@@ -85,14 +125,18 @@ public:
   /// Leaves the sums for the step of the coefficients with the new weights.
   void stepWeights()
   {
+    const double bound =
+      energyBound(this->RowEnergy, this->WeightSum, this->LargestCoefficient, RoundingOfEnergy);
     double tau = this->Tau;
-    for (int halvings = 0; halvings <= MostHalvings; ++halvings, tau /= 2)
+    int halvings = 0;
+    while (!this->acceptWeights(tau, bound, halvings < this->Halvings))
     {
-      if (this->tryWeights(halvings < MostHalvings ? tau : 0))
-      {
-        break;
-      }
+      ++halvings;
+      tau = halvings < MostHalvings ? tau / 2 : 0;
+      this->proposeWeights(tau);
     }
+    this->Halvings = halvings;
+    this->SmallestTau = std::min(this->SmallestTau, tau);
     std::swap(this->W, this->NewW);
   }
 
@@ -106,21 +150,32 @@ public:
       this->Vectors.add(
         -this->Mu * this->Oscillation.kappa(), this->Oscillation.laplacian(), this->C);
     }
-    this->Operator.touched().forEach(this->Operator.threads(),
-      [&](std::int64_t begin, std::int64_t end)
+    this->LargestCoefficient = this->Operator.touched().reduce(
+      this->Operator.threads(), 0.0,
+      [&](std::int64_t begin, std::int64_t end, double& partial)
       {
         for (std::int64_t i = begin; i < end; ++i)
         {
           this->C[i] += this->Mu * (this->W[i] * this->CoefficientSums(0, i));
           this->Pairs(0, i) = this->W[i] * this->C[i];
+          this->WeightSums(0, i) = this->WeightSums(1, i) = 0;
+          partial = std::max(partial, std::abs(this->C[i]));
         }
-      });
+      },
+      [](double a, double b) { return std::max(a, b); });
     this->evaluate();
     return !energyRose(before, this->RowEnergy + this->Oscillation.descendedEnergy(),
       this->WeightSum + this->Oscillation.sumOfWeights(), this->C);
   }
 
 private:
+  /// New weights of a step, and what is found on the way.
+  struct Proposal
+  {
+    double SquaredNorm = 0; ///< ||D^T V r||^2, of the old weights
+    double SmallestWeight = Infinity;
+  };
+
   void chooseStepSize()
   {
     const double largest = this->Operator.touched().reduce(
@@ -136,55 +191,89 @@ private:
     this->Mu = this->Oscillation.chooseStepSize(largest, this->Options.StepSize);
   }
 
+  /// Of new coefficients, with the first step of the weights that will be tried.
   void evaluate()
   {
     this->RowEnergy = this->Operator.weightSums(this->Pairs, this->WeightSums);
     this->Oscillation.update(this->C);
+    this->proposeWeights(this->Tau);
   }
 
-  /// Takes the step tau from W to NewW. Returns whether no denominator becomes 0 and E does not
-  /// grow; then the sums, the pairs and the energy are those of the new weights.
-  bool tryWeights(double tau)
+  /// The step tau from W to NewW, with its pairs and room for its sums.
+  void proposeWeights(double tau)
   {
-    const double smallest = this->Operator.touched().reduce(
-      this->Operator.threads(), Infinity,
-      [&](std::int64_t begin, std::int64_t end, double& partial)
+    this->Proposed = this->Operator.touched().reduce(
+      this->Operator.threads(), Proposal{},
+      [&](std::int64_t begin, std::int64_t end, Proposal& partial)
       {
         for (std::int64_t i = begin; i < end; ++i)
         {
-          const double gradient =
-            2 * (this->C[i] * this->WeightSums(0, i) - this->WeightSums(1, i));
-          const double w = tau > 0 ? std::max(this->W[i] - tau * gradient, 0.0) : this->W[i];
+          const double c = this->C[i], before = this->W[i], sum = this->WeightSums(0, i);
+          const double gradient = 2 * (c * sum - this->WeightSums(1, i));
+          const double w = tau > 0 ? std::max(before - tau * gradient, 0.0) : before;
           this->NewW[i] = w;
-          this->Pairs(0, i) = w * this->C[i];
+          this->Pairs(0, i) = w * c;
           this->Pairs(1, i) = w;
-          partial = std::min(partial, w);
+          this->CoefficientSums(0, i) = this->CoefficientSums(1, i) = 0;
+          partial.SquaredNorm += (before * sum) * (before * sum);
+          partial.SmallestWeight = std::min(partial.SmallestWeight, w);
         }
       },
-      [](double a, double b) { return std::min(a, b); });
-    if (tau > 0 && smallest < SmallestDenominator &&
-      !hasPositiveDenominators(this->Operator.lattice(), this->NewW))
+      [](const Proposal& a, const Proposal& b)
+      {
+        return Proposal{ a.SquaredNorm + b.SquaredNorm,
+          std::min(a.SmallestWeight, b.SmallestWeight) };
+      });
+  }
+
+  /**
+   * Returns whether with the proposed weights no denominator becomes 0 and E does not pass the
+   * bound, which a step of 0 does not have; then sums and energy are those of the new weights.
+   *
+   * @param isDoubtful  finds the energy first, since the sums are probably of no use
+   */
+  bool acceptWeights(double tau, double bound, bool isDoubtful)
+  {
+    if (tau > 0 && this->Proposed.SmallestWeight < SmallestDenominator &&
+      !this->hasPositiveDenominatorsOfNewWeights())
     {
       return false;
     }
-    const double energy = this->Operator.coefficientSums(this->Pairs, this->CoefficientSums);
-    if (tau > 0 && energyRose(this->RowEnergy, energy, this->WeightSum, this->C, RoundingOfEnergy))
+    if (tau > 0 && isDoubtful && !(this->Operator.energy(this->Pairs, bound) <= bound))
+    {
+      return false;
+    }
+    const double energy = this->Operator.coefficientSums(
+      this->Pairs, this->CoefficientSums, tau > 0 ? bound : Infinity);
+    if (tau > 0 && !(energy <= bound))
     {
       return false;
     }
     this->RowEnergy = energy;
-    this->SmallestTau = std::min(this->SmallestTau, tau);
     return true;
   }
 
-  const RationalOperator<Dim> Operator;
+  bool hasPositiveDenominatorsOfNewWeights() const
+  {
+    return this->Operator.touched().reduce(
+             this->Operator.threads(), 0,
+             [&](std::int64_t begin, std::int64_t end, int& failures) {
+               failures +=
+                 hasPositiveDenominators(this->Operator.lattice(), this->NewW, begin, end) ? 0 : 1;
+             },
+             [](int a, int b) { return a + b; }) == 0;
+  }
+
+  RationalOperator<Dim> Operator;
   const SolverOptions& Options;
   const double Tau;
   Vector& C;
   const ChunkedVectors Vectors;
   OscillationTerm<Dim> Oscillation;
   const double WeightSum;
-  double RowEnergy = 0, Mu = 0, SmallestTau = Infinity;
+  double RowEnergy = 0, Mu = 0, SmallestTau = Infinity, LargestCoefficient = 0;
+  int Halvings = 0; // of tau, in the last step
+  Proposal Proposed;
   Vector W, NewW;
   CoefficientPairs Pairs;           // w_i c_i and w_i
   CoefficientPairs CoefficientSums; // RationalOperator::coefficientSums
@@ -195,41 +284,7 @@ private:
 template <int Dim>
 bool hasPositiveDenominators(const Lattice<Dim>& lattice, const Vector& weights)
 {
-  constexpr std::array<double, 3> basis = { 1. / 6, 4. / 6, 1. / 6 };
-  constexpr int count = Dim == 2 ? 9 : 27;
-  Index<Dim> knots, at;
-  std::int64_t total = 1;
-  for (int a = 0; a < Dim; ++a)
-  {
-    knots[a] = lattice.cells(a) + 1;
-    total *= knots[a];
-  }
-  for (std::int64_t k = 0; k < total; ++k)
-  {
-    for (std::int64_t a = 0, rest = k; a < Dim; rest /= knots[a], ++a)
-    {
-      at[static_cast<std::size_t>(a)] = rest % knots[static_cast<std::size_t>(a)];
-    }
-    const std::int64_t first = lattice.coefficientIndex(at);
-    double denominator = 0;
-    for (int i = 0; i < count; ++i)
-    {
-      std::int64_t index = first, stride = 1;
-      double product = 1;
-      for (int a = 0, rest = i; a < Dim; ++a, rest /= 3)
-      {
-        index += rest % 3 * stride;
-        stride *= lattice.Size[a];
-        product *= basis[static_cast<std::size_t>(rest % 3)];
-      }
-      denominator += product * weights[index];
-    }
-    if (!(denominator >= SmallestDenominator))
-    {
-      return false;
-    }
-  }
-  return true;
+  return hasPositiveDenominators(lattice, weights, 0, lattice.numberOfCoefficients());
 }
 
 template <int Dim>

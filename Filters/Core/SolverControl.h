@@ -9,6 +9,7 @@
 #include "LeastSquaresSolver.h"
 #include "Parallel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -112,23 +113,27 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double RoundingOfValues = 64 * std::numeric_limits<double>::epsilon();
 
 /**
- * Whether the energy rose by more than rounding, which a converging step never does. Near 0, where
- * all rows are met, the energy is rounding alone and goes up and down.
+ * The largest energy that is no rise from @a before but rounding. Near 0, where all rows are met,
+ * the energy is rounding alone and goes up and down.
  *
- * @param weightSum  sum_k w_k
- * @param slack      relative growth of sqrt(E) that does not count
+ * @param weightSum           sum_k w_k
+ * @param largestCoefficient  the largest |c_i|
+ * @param slack               relative growth of sqrt(E) that does not count
  */
+inline double energyBound(double before, double weightSum, double largestCoefficient, double slack)
+{
+  // By the triangle inequality for sqrt(E), the weighted norm of the residuals.
+  const double norm =
+    std::sqrt(before) * (1 + slack) + std::sqrt(weightSum) * RoundingOfValues * largestCoefficient;
+  return std::max(before, norm * norm);
+}
+
+/// Whether the energy rose by more than rounding, which a converging step never does.
 inline bool energyRose(
   double before, double after, double weightSum, const Vector& coefficients, double slack = 1e-6)
 {
-  if (after <= before)
-  {
-    return false;
-  }
-  // By the triangle inequality for sqrt(E), the weighted norm of the residuals.
-  const double rounding =
-    std::sqrt(weightSum) * RoundingOfValues * coefficients.cwiseAbs().maxCoeff();
-  return !(std::sqrt(after) <= std::sqrt(before) * (1 + slack) + rounding);
+  return !(after <= before) &&
+    !(after <= energyBound(before, weightSum, coefficients.cwiseAbs().maxCoeff(), slack));
 }
 }
 

@@ -3,10 +3,10 @@ foreach (name IN ITEMS
     AutomaticFairing AutomaticLattice BSplineBasis BrickLattice BrickOperator BrickSpline
     CollocationOperator ConstraintRows FairingIteration FairingSystem FarField HierarchicalFit HierarchyLevel
     ImplicitFit ImplicitSpline KnotRefinement LeastSquaresSolver Oscillation Parametrization PointSamples
-    RationalOperator RationalSolver TensorSpline TouchedCoefficients)
+    RationalOperator RationalSolver RowBatches TensorSpline TouchedCoefficients)
   list(APPEND ipia_core_sources "${CMAKE_CURRENT_LIST_DIR}/${name}.cxx")
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()
-foreach (name IN ITEMS BandMatrix CubicBasis Dispatch HermiteRows Lattice OutsideDomain Parallel SolverControl Types)
+foreach (name IN ITEMS BandMatrix CubicBasis Dispatch HermiteRows Lattice OutsideDomain Parallel SolverControl TileSweep Types)
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()

@@ -40,18 +40,18 @@ public:
 
   /// Calls body(begin, end, partial) for all runs, partial being one of the task, at first
   /// @a initial; merges the partials in order.
-  template <typename Body, typename Merge>
-  double reduce(int threads, double initial, const Body& body, const Merge& merge) const
+  template <typename T, typename Body, typename Merge>
+  T reduce(int threads, const T& initial, const Body& body, const Merge& merge) const
   {
-    Vector partials = Vector::Constant(this->numberOfTasks(), initial);
+    std::vector<T> partials(static_cast<std::size_t>(this->numberOfTasks()), initial);
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (std::int64_t task = 0; task < this->numberOfTasks(); ++task)
     {
-      double& partial = partials[task];
+      T& partial = partials[static_cast<std::size_t>(task)];
       this->run(task, [&](std::int64_t begin, std::int64_t end) { body(begin, end, partial); });
     }
-    double result = initial;
-    for (const double partial : partials)
+    T result = initial;
+    for (const T& partial : partials)
     {
       result = merge(result, partial);
     }

@@ -55,39 +55,42 @@ TYPED_TEST(ConstraintRowsTest, KeepEveryRowOnceInItsCell)
   positions.col(1) = ipia::test::extents(lattice);
   positions.col(2) = positions.col(3);
   const Vector targets = random.vector(700, -1, 1), weights = random.vector(700, 0, 2);
-  const ConstraintRows<Dim> rows(lattice, positions, targets, weights);
-  ASSERT_EQ(rows.size(), 700);
-
-  std::map<double, std::int64_t> cellOfTarget;
-  std::map<double, double> weightOfTarget;
-  const std::int64_t cells = rows.tileBegin(rows.numberOfTiles());
-  std::int64_t seen = 0;
-  for (std::int64_t c = 0; c < cells; ++c)
+  for (const int barAxis : { 0, 1 })
   {
-    EXPECT_EQ(rows.cells()[c].Begin, seen) << "cells follow one another without a gap";
-    EXPECT_LT(rows.cells()[c].Begin, rows.cells()[c + 1].Begin) << "only occupied cells";
-    for (; seen < rows.cells()[c + 1].Begin; ++seen)
+    const ConstraintRows<Dim> rows(lattice, positions, targets, weights, barAxis);
+    ASSERT_EQ(rows.size(), 700);
+
+    std::map<double, std::int64_t> cellOfTarget;
+    std::map<double, double> weightOfTarget;
+    const std::int64_t cells = rows.tileBegin(rows.numberOfTiles());
+    std::int64_t seen = 0;
+    for (std::int64_t c = 0; c < cells; ++c)
     {
-      const ConstraintRow<Dim>& row = rows.rows()[seen];
-      cellOfTarget[row.Target] = rows.cells()[c].Coefficient;
-      weightOfTarget[row.Target] = row.Weight;
-      for (double t : row.T)
+      EXPECT_EQ(rows.cells()[c].Begin, seen) << "cells follow one another without a gap";
+      EXPECT_LT(rows.cells()[c].Begin, rows.cells()[c + 1].Begin) << "only occupied cells";
+      for (; seen < rows.cells()[c + 1].Begin; ++seen)
       {
-        EXPECT_TRUE(t >= 0 && t <= 1 + 1e-14);
+        const ConstraintRow<Dim>& row = rows.rows()[seen];
+        cellOfTarget[row.Target] = rows.cells()[c].Coefficient;
+        weightOfTarget[row.Target] = row.Weight;
+        for (double t : row.T)
+        {
+          EXPECT_TRUE(t >= 0 && t <= 1 + 1e-14);
+        }
       }
     }
-  }
-  EXPECT_EQ(seen, 700);
-  for (std::int64_t k = 0; k < 700; ++k)
-  {
-    Index<Dim> cell;
-    for (int a = 0; a < Dim; ++a)
+    EXPECT_EQ(seen, 700);
+    for (std::int64_t k = 0; k < 700; ++k)
     {
-      cell[a] = lattice.locate(positions(a, k), a).Cell;
+      Index<Dim> cell;
+      for (int a = 0; a < Dim; ++a)
+      {
+        cell[a] = lattice.locate(positions(a, k), a).Cell;
+      }
+      ASSERT_EQ(cellOfTarget.count(targets[k]), 1u);
+      EXPECT_EQ(cellOfTarget[targets[k]], lattice.coefficientIndex(cell));
+      EXPECT_EQ(weightOfTarget[targets[k]], weights[k]);
     }
-    ASSERT_EQ(cellOfTarget.count(targets[k]), 1u);
-    EXPECT_EQ(cellOfTarget[targets[k]], lattice.coefficientIndex(cell));
-    EXPECT_EQ(weightOfTarget[targets[k]], weights[k]);
   }
 }
 
@@ -108,25 +111,28 @@ TYPED_TEST(ConstraintRowsTest, TilesOfOneColourTouchDisjointCoefficients)
   constexpr int Dim = TypeParam::value;
   const Lattice<Dim> lattice = tiledLattice<Dim>();
   const std::int64_t n = 40 * lattice.numberOfCells();
-  const ConstraintRows<Dim> rows(
-    lattice, ipia::test::Random().pointsIn(lattice, n), Vector::Zero(n), Vector());
-  EXPECT_EQ(rows.tileOfColour(0), 0);
-  EXPECT_EQ(rows.tileOfColour(ConstraintRows<Dim>::NumberOfColours), rows.numberOfTiles());
-  EXPECT_EQ(rows.tileBegin(rows.numberOfTiles()), lattice.numberOfCells()) << "all are occupied";
-  for (int colour = 0; colour < ConstraintRows<Dim>::NumberOfColours; ++colour)
+  for (const int barAxis : { 0, 1 })
   {
-    EXPECT_GE(rows.tileOfColour(colour + 1) - rows.tileOfColour(colour), Dim == 2 ? 3 : 9);
-    std::set<std::int64_t> taken;
-    for (std::int64_t t = rows.tileOfColour(colour); t < rows.tileOfColour(colour + 1); ++t)
+    const ConstraintRows<Dim> rows(
+      lattice, ipia::test::Random().pointsIn(lattice, n), Vector::Zero(n), Vector(), barAxis);
+    EXPECT_EQ(rows.tileOfColour(0), 0);
+    EXPECT_EQ(rows.tileOfColour(ConstraintRows<Dim>::NumberOfColours), rows.numberOfTiles());
+    EXPECT_EQ(rows.tileBegin(rows.numberOfTiles()), lattice.numberOfCells()) << "all are occupied";
+    for (int colour = 0; colour < ConstraintRows<Dim>::NumberOfColours; ++colour)
     {
-      std::set<std::int64_t> mine;
-      for (std::int64_t c = rows.tileBegin(t); c < rows.tileBegin(t + 1); ++c)
+      EXPECT_GE(rows.tileOfColour(colour + 1) - rows.tileOfColour(colour), Dim == 2 ? 3 : 9);
+      std::set<std::int64_t> taken;
+      for (std::int64_t t = rows.tileOfColour(colour); t < rows.tileOfColour(colour + 1); ++t)
       {
-        mine.merge(touched(lattice, rows.cells()[c].Coefficient));
+        std::set<std::int64_t> mine;
+        for (std::int64_t c = rows.tileBegin(t); c < rows.tileBegin(t + 1); ++c)
+        {
+          mine.merge(touched(lattice, rows.cells()[c].Coefficient));
+        }
+        const std::size_t before = taken.size(), more = mine.size();
+        taken.merge(mine);
+        EXPECT_EQ(taken.size(), before + more) << "colour " << colour << ", tile " << t;
       }
-      const std::size_t before = taken.size(), more = mine.size();
-      taken.merge(mine);
-      EXPECT_EQ(taken.size(), before + more) << "colour " << colour << ", tile " << t;
     }
   }
 }

@@ -46,9 +46,10 @@ struct Problem
     this->B = ipia::test::collocationMatrix(this->Grid, this->Positions);
   }
 
-  ConstraintRows<Dim> rows() const
+  /// With bars along y, as fits have them.
+  ConstraintRows<Dim> rows(int barAxis = 1) const
   {
-    return { this->Grid, this->Positions, this->Targets, this->RowWeights };
+    return { this->Grid, this->Positions, this->Targets, this->RowWeights, barAxis };
   }
 };
 
@@ -174,7 +175,7 @@ TYPED_TEST(RationalSolver, IsTheDenseIteration)
 {
   constexpr int Dim = TypeParam::value;
   const Problem<Dim> problem;
-  const ConstraintRows<Dim> rows = problem.rows();
+  const ConstraintRows<Dim> alongX = problem.rows(0), alongY = problem.rows(1);
   for (const OscillationOptions& oscillation :
     { OscillationOptions{}, OscillationOptions{ 0.05, OscillationStep::Energy },
       OscillationOptions{ 0.01, OscillationStep::AsPrinted } })
@@ -190,16 +191,19 @@ TYPED_TEST(RationalSolver, IsTheDenseIteration)
         {
           dense.step(tau);
         }
-        Vector c = Vector::Zero(problem.B.cols());
-        const RationalResult result =
-          solveRational(rows, iterations(count, oscillation), { tau }, 1, c);
-        EXPECT_EQ(result.Solver.Status, SolverStatus::Done);
-        EXPECT_EQ(result.Solver.NumberOfIterations, count);
-        EXPECT_LE(relativeDifference(c, dense.C), 1e-11) << count << " iterations, tau " << tau;
-        EXPECT_LE(relativeDifference(result.Weights, dense.W), 1e-11)
-          << count << " iterations, tau " << tau;
-        EXPECT_NEAR(result.Solver.Energy, dense.energy(), 1e-11 * dense.energy());
-        EXPECT_NEAR(result.Solver.StepSize, dense.StepSize, 1e-11 * dense.StepSize);
+        for (const ConstraintRows<Dim>* rows : { &alongX, &alongY })
+        {
+          Vector c = Vector::Zero(problem.B.cols());
+          const RationalResult result =
+            solveRational(*rows, iterations(count, oscillation), { tau }, 1, c);
+          EXPECT_EQ(result.Solver.Status, SolverStatus::Done);
+          EXPECT_EQ(result.Solver.NumberOfIterations, count);
+          EXPECT_LE(relativeDifference(c, dense.C), 1e-11) << count << " iterations, tau " << tau;
+          EXPECT_LE(relativeDifference(result.Weights, dense.W), 1e-11)
+            << count << " iterations, tau " << tau;
+          EXPECT_NEAR(result.Solver.Energy, dense.energy(), 1e-11 * dense.energy());
+          EXPECT_NEAR(result.Solver.StepSize, dense.StepSize, 1e-11 * dense.StepSize);
+        }
       }
       // The weights have moved by far more than the bound above tells apart.
       EXPECT_GT((dense.W.array() - 1).abs().maxCoeff(), 1e-3);
@@ -216,15 +220,18 @@ TYPED_TEST(RationalSolver, WeightGradientAgreesWithCentralDifferences)
   const std::int64_t n = problem.Grid.numberOfCoefficients();
   const Vector c = random.vector(n, -1, 1);
   Vector w = random.vector(n, 0.5, 2);
-  CoefficientPairs pairs(2, n), sums;
-  const RationalOperator<Dim> rational(rows, 1);
+  CoefficientPairs pairs(2, n), sums = CoefficientPairs::Zero(2, n);
+  RationalOperator<Dim> rational(rows, 1);
   const auto energy = [&]
   {
     pairs.row(0) = c.cwiseProduct(w);
     pairs.row(1) = w;
-    return rational.weightSums(pairs, sums);
+    return rational.energy(pairs);
   };
-  energy();
+  const double middleEnergy = energy();
+  EXPECT_DOUBLE_EQ(rational.coefficientSums(pairs, sums), middleEnergy);
+  sums.setZero();
+  EXPECT_DOUBLE_EQ(rational.weightSums(pairs, sums), middleEnergy);
   const Vector gradient =
     2 * (c.cwiseProduct(Vector(sums.row(0).transpose())) - Vector(sums.row(1).transpose()));
   const double step = 1e-4;
@@ -321,7 +328,8 @@ ConstraintRows<Dim> manyRows()
   const auto sphere = ipia::test::spherePoints<Dim>(
     Point<Dim>::Constant(lattice.extent(0) / 2), 0.4 * lattice.extent(0), 9000);
   Vector targets = ipia::test::Random(7).vector(9000, -0.5, 0.5);
-  return { lattice, sphere.Positions + 0.3 * sphere.Normals * targets.asDiagonal(), targets, {} };
+  return { lattice, sphere.Positions + 0.3 * sphere.Normals * targets.asDiagonal(), targets, {},
+    1 };
 }
 
 TYPED_TEST(RationalSolver, HasTheSameBitsOnAnyNumberOfThreads)
