@@ -12,16 +12,9 @@
 #ifndef vtkPFairingPIACurveFilter_h
 #define vtkPFairingPIACurveFilter_h
 
+#include "IPIAFairingPanel.h"
 #include "vtkFairingPIACurveFilter.h"
 #include "vtkFiltersIPIAParaViewModule.h" // for the export macro
-
-#include <memory> // for std::unique_ptr
-#include <string> // for std::string
-
-namespace ipia
-{
-class HiddenArrays;
-}
 
 class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPFairingPIACurveFilter : public vtkFairingPIACurveFilter
 {
@@ -35,17 +28,17 @@ public:
    * (default FairingWeight), which of these may move if UseMovablePoints is on, and the parameters
    * of the data, of one component. A name that no array has is no array.
    */
-  void SetControlPointWeightsArray(const char* name);
-  void SetMovablePointsArray(const char* name);
-  void SetParametersArray(const char* name);
+  void SetControlPointWeightsArray(const char* name) { this->Arrays.SetControlPointWeights(name); }
+  void SetMovablePointsArray(const char* name) { this->Arrays.SetMovablePoints(name); }
+  void SetParametersArray(const char* name) { this->Arrays.Take(3, name); }
   ///@}
 
   ///@{
   /**
    * Whether only the movable points move. Default off: all.
    */
-  void SetUseMovablePoints(bool use);
-  vtkGetMacro(UseMovablePoints, bool);
+  void SetUseMovablePoints(bool use) { this->Arrays.SetUseMovablePoints(use); }
+  bool GetUseMovablePoints() const { return this->Arrays.GetUseMovablePoints(); }
   ///@}
 
   vtkTypeBool ProcessRequest(
@@ -65,9 +58,7 @@ private:
   vtkPFairingPIACurveFilter(const vtkPFairingPIACurveFilter&) = delete;
   void operator=(const vtkPFairingPIACurveFilter&) = delete;
 
-  bool UseMovablePoints;
-  std::string MovablePoints;
-  std::unique_ptr<ipia::HiddenArrays> Arrays;
+  ipia::FairingArrays Arrays;
 };
 
 #endif

@@ -13,16 +13,9 @@
 #ifndef vtkPFairingPIASurfaceFilter_h
 #define vtkPFairingPIASurfaceFilter_h
 
+#include "IPIAFairingPanel.h"
 #include "vtkFairingPIASurfaceFilter.h"
 #include "vtkFiltersIPIAParaViewModule.h" // for the export macro
-
-#include <memory> // for std::unique_ptr
-#include <string> // for std::string
-
-namespace ipia
-{
-class HiddenArrays;
-}
 
 class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPFairingPIASurfaceFilter : public vtkFairingPIASurfaceFilter
 {
@@ -37,17 +30,20 @@ public:
    * of the data, of two components, (u, v); empty (the default): the active texture coordinates. A
    * name that no array has is no array.
    */
-  void SetControlPointWeightsArray(const char* name);
-  void SetMovablePointsArray(const char* name);
-  void SetParametersArray(const char* name);
+  void SetControlPointWeightsArray(const char* name) { this->Arrays.SetControlPointWeights(name); }
+  void SetMovablePointsArray(const char* name) { this->Arrays.SetMovablePoints(name); }
+  void SetParametersArray(const char* name)
+  {
+    this->Arrays.TakeOr("Active texture coordinates", 3, name);
+  }
   ///@}
 
   ///@{
   /**
    * Whether only the movable points move. Default off: all.
    */
-  void SetUseMovablePoints(bool use);
-  vtkGetMacro(UseMovablePoints, bool);
+  void SetUseMovablePoints(bool use) { this->Arrays.SetUseMovablePoints(use); }
+  bool GetUseMovablePoints() const { return this->Arrays.GetUseMovablePoints(); }
   ///@}
 
   vtkTypeBool ProcessRequest(
@@ -67,9 +63,7 @@ private:
   vtkPFairingPIASurfaceFilter(const vtkPFairingPIASurfaceFilter&) = delete;
   void operator=(const vtkPFairingPIASurfaceFilter&) = delete;
 
-  bool UseMovablePoints;
-  std::string MovablePoints;
-  std::unique_ptr<ipia::HiddenArrays> Arrays;
+  ipia::FairingArrays Arrays;
 };
 
 #endif
