@@ -11,34 +11,37 @@
 
 namespace ipia
 {
-namespace
+OptionalArray::OptionalArray(HiddenArrays& arrays, int index, const char* name, bool use)
+  : Arrays(arrays)
+  , Index(index)
+  , Name(name)
+  , Use(use)
 {
-constexpr int ControlPointWeightsIndex = 1;
-constexpr int MovablePointsIndex = 2;
+  arrays.Hide(index, 1, use ? name : HiddenArrays::NoArray);
+}
+
+void OptionalArray::SetName(const char* name)
+{
+  this->Name = name ? name : "";
+  this->Take();
+}
+
+void OptionalArray::SetUse(bool use)
+{
+  this->Use = use;
+  this->Take();
+}
+
+void OptionalArray::Take()
+{
+  this->Arrays.Take(this->Index, this->Use ? this->Name.c_str() : HiddenArrays::NoArray);
 }
 
 FairingArrays::FairingArrays(vtkFairingPIAFilter* filter)
   : HiddenArrays(filter)
+  , Weights(*this, 1, "FairingWeight", true)
+  , Movable(*this, 2, "", false)
 {
-  this->Hide(ControlPointWeightsIndex, 1, "FairingWeight");
-  this->Hide(MovablePointsIndex, 1, NoArray);
-}
-
-void FairingArrays::SetControlPointWeights(const char* name)
-{
-  this->Take(ControlPointWeightsIndex, name);
-}
-
-void FairingArrays::SetMovablePoints(const char* name)
-{
-  this->MovablePoints = name ? name : "";
-  this->Take(MovablePointsIndex, this->UseMovablePoints ? this->MovablePoints.c_str() : NoArray);
-}
-
-void FairingArrays::SetUseMovablePoints(bool use)
-{
-  this->UseMovablePoints = use;
-  this->SetMovablePoints(std::string(this->MovablePoints).c_str());
 }
 
 void takeBlocksAsOne(vtkInformation* portInfo)

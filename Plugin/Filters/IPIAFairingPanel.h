@@ -17,20 +17,34 @@ class vtkFairingPIAFilter;
 
 namespace ipia
 {
-/// The arrays of a fairing filter: HiddenArrays, of which those of port 1 have their defaults.
+/// An array with a tick box: without it, none.
+class VTKFILTERSIPIAPARAVIEW_EXPORT OptionalArray
+{
+public:
+  OptionalArray(HiddenArrays& arrays, int index, const char* name, bool use);
+
+  void SetName(const char* name);
+  void SetUse(bool use);
+  bool GetUse() const { return this->Use; }
+
+private:
+  void Take();
+
+  HiddenArrays& Arrays;
+  int Index;
+  std::string Name;
+  bool Use;
+};
+
+/// The arrays of a fairing filter by their indices, of which those of the control points (port 1)
+/// are optional.
 class VTKFILTERSIPIAPARAVIEW_EXPORT FairingArrays : public HiddenArrays
 {
 public:
   explicit FairingArrays(vtkFairingPIAFilter* filter);
 
-  void SetControlPointWeights(const char* name);
-  void SetMovablePoints(const char* name);
-  void SetUseMovablePoints(bool use);
-  bool GetUseMovablePoints() const { return this->UseMovablePoints; }
-
-private:
-  bool UseMovablePoints = false;
-  std::string MovablePoints;
+  OptionalArray Weights;
+  OptionalArray Movable;
 };
 
 /// Makes a port take composite data as one if there are several ranks: otherwise each would be

@@ -66,7 +66,7 @@ noted = {{
     "points": source.GetDataInformation().GetNumberOfPoints(),
     "cells": source.GetDataInformation().GetNumberOfCells(),
 }}
-for name in ("GridSize", "FairingWeight", "UsePointBounds", "Normals"):
+for name in ("GridSize", "FairingWeight", "UsePointBounds", "Normals", "UseControlPointWeights"):
     if hasattr(source, name):
         value = getattr(source, name)
         noted[name] = list(value) if hasattr(value, "__len__") else value
@@ -90,6 +90,15 @@ subprocess.Popen(
     ["sh", "-c",
      'for i in 1 2 3 4 5 6 7 8 9; do sleep 1; import -silent -window root "$0/menu$i.png"; done',
      {FOLDER!r}])
+"""
+LATER_ROUND = """
+from paraview import servermanager, simple
+data = simple.Ellipse(Resolution=100)
+first = simple.FairingPIACurve(Input=data)
+first.UpdatePipeline()
+again = simple.FairingPIACurve(Input=data, ControlPoints=servermanager.OutputPort(first, 1))
+simple.Show(again)
+simple.SetActiveSource(again)
 """
 ARRANGE = f"""
 import subprocess
@@ -146,6 +155,14 @@ def write_events(scan):
     event(PROPERTIES + "/GridSize/LineEdit0", "set_string", "2")
     apply()
     note("refused")
+    # A later round of fairing, with the weights of the one before and without.
+    run_in_shell("later_round.py", LATER_ROUND)
+    event(PANEL + "/SearchBox/AdvancedButton", "set_boolean", "true")
+    apply()
+    note("weights")
+    event(PROPERTIES + "/UseControlPointWeights/CheckBox", "set_boolean", "false")
+    apply()
+    note("no_weights")
     with open(path("events.xml"), "w", encoding="utf-8") as file:
         file.write('<?xml version="1.0" ?>\n<pqevents>\n' + "\n".join(events) + "\n</pqevents>\n")
 
@@ -207,6 +224,9 @@ def menu():
 
 def check(output):
     menu()
+    for name, use in (("weights", 1), ("no_weights", 0)):
+        assert noted(name)["UseControlPointWeights"] == use, (name, noted(name))
+        assert noted(name)["points"] > 0, (name, noted(name))
     assert output.count("ERR|") == 1, output  # the refusal
     for name in ("cloud", "panel", "surface", "coarse", "undone", "box", "advanced", "refused"):
         assert pixels(name).shape == (SIZE[1], SIZE[0], 3), name
