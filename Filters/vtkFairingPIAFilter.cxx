@@ -122,19 +122,20 @@ void vtkFairingPIAFilter::SetResults(const std::vector<ipia::FairingRound>& roun
   }
 }
 
+void vtkFairingPIAFilter::Clear(vtkInformationVector* output)
+{
+  for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
+  {
+    vtkPolyData::GetData(output, port)->Initialize();
+  }
+  this->FittingError = this->FairingEnergy = this->IterationError = 0;
+  this->NumberOfIterationsUsed = 0;
+}
+
 int vtkFairingPIAFilter::RequestData(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
-  const auto clear = [&]
-  {
-    for (int port = 0; port < this->GetNumberOfOutputPorts(); ++port)
-    {
-      vtkPolyData::GetData(output, port)->Initialize();
-    }
-    this->FittingError = this->FairingEnergy = this->IterationError = 0;
-    this->NumberOfIterationsUsed = 0;
-  };
-  clear();
+  this->Clear(output);
   this->Aborted = false;
   if (this->Report(0))
   {
@@ -148,12 +149,12 @@ int vtkFairingPIAFilter::RequestData(
   }
   if (!refusal.empty())
   {
-    clear();
+    this->Clear(output);
     vtkErrorMacro(<< refusal);
   }
   else if (this->Aborted || this->Report(1))
   {
-    clear();
+    this->Clear(output);
   }
   else
   {

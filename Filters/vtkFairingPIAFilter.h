@@ -247,6 +247,8 @@ protected:
   virtual std::string Fair(vtkInformationVector** input, vtkInformationVector* output,
     const ipia::FairingParameters& parameters) = 0;
 
+  /// Empties the outputs; the results are 0.
+  void Clear(vtkInformationVector* output);
   /// True if the user aborted; the outputs are emptied then.
   bool Report(double share);
   void SetResults(const std::vector<ipia::FairingRound>& rounds);

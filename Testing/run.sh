@@ -22,7 +22,7 @@ mkdir -p "$main" "$sanitized" "$plugin"
 begin=$SECONDS
 install_packages "$main/install.log" cmake g++ ninja-build libvtk9-dev python3-vtk9 python3-numpy \
   libeigen3-dev libgtest-dev xvfb xauth \
-  libqt5help5 libqt5opengl5 libqt5svg5 openmpi-bin imagemagick xdotool valgrind
+  qtbase5-dev libqt5help5 libqt5opengl5 libqt5svg5 openmpi-bin imagemagick xdotool valgrind
 unpack_scans "$data"
 unpack_bunny "$data"
 unpack_paraview "$paraview"

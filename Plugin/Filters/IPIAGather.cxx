@@ -262,6 +262,19 @@ void requestOwnPart(vtkMultiProcessController* controller, vtkInformation* input
   inputInfo->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
 }
 
+bool requestOwnParts(vtkInformationVector** input, int numberOfPorts)
+{
+  vtkMultiProcessController* controller = parallelController();
+  for (int port = 0; controller && port < numberOfPorts; ++port)
+  {
+    for (int i = 0; i < input[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      requestOwnPart(controller, input[port]->GetInformationObject(i));
+    }
+  }
+  return controller != nullptr;
+}
+
 Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part)
 {
   return gather(controller, part, appendPoints);
@@ -323,30 +336,12 @@ GatheredShape gatherShape(vtkMultiProcessController* controller, vtkDataObject* 
   return shape;
 }
 
-GatheredShapes::GatheredShapes(
-  vtkMultiProcessController* controller, vtkInformationVector** input, int numberOfPorts)
-  : Input(input, numberOfPorts)
+std::string gatheredWarning(int ranksWithPoints, int ranks)
 {
-  for (int port = 0; port < numberOfPorts; ++port)
-  {
-    // The same on all ranks: connections are those of the session.
-    if (input[port]->GetNumberOfInformationObjects() > 0)
-    {
-      const GatheredShape shape = gatherShape(controller, vtkDataObject::GetData(input[port]));
-      this->Input.Set(port, shape.Data);
-      this->Refusal = this->Refusal.empty() ? shape.Refusal : this->Refusal;
-      if (port == 0)
-      {
-        this->RanksWithPoints = shape.RanksWithPoints;
-      }
-      else if (shape.NumberOfParts > 1 && this->Refusal.empty())
-      {
-        this->Refusal =
-          "The control points on port 1 are in several parts, on several ranks of the "
-          "server or in several blocks. Connect output 1 of an earlier round.";
-      }
-    }
-  }
+  return "The points of " + std::to_string(ranksWithPoints) + " ranks are fitted on the first of " +
+    std::to_string(ranks) +
+    ", which has all of the output: the result is that of a single rank and takes its memory and "
+    "time.";
 }
 
 vtkDataObject* SteadyCopy::Of(vtkInformation* input)

@@ -26,6 +26,9 @@ vtkMultiProcessController* parallelController();
 /// Makes a filter ask for the part of its input that this rank has, without ghosts.
 void requestOwnPart(vtkMultiProcessController* controller, vtkInformation* inputInfo);
 
+/// The same for all inputs of all ports if there is more than one rank; returns whether there is.
+bool requestOwnParts(vtkInformationVector** input, int numberOfPorts);
+
 /// What one rank has gathered.
 struct Gathered
 {
@@ -57,6 +60,9 @@ struct GatheredShape
 /// As gatherPoints, for filters that need lines, grids and field data (that of one data set only).
 GatheredShape gatherShape(vtkMultiProcessController* controller, vtkDataObject* part);
 
+/// What is told of a fit of the points of several ranks.
+std::string gatheredWarning(int ranksWithPoints, int ranks);
+
 /// A copy of a filter's input that stays the same object for as long as the input does. ParaView
 /// puts a filter before each input that copies it whenever anything is updated: to a fitter that
 /// would be other points, which it would fit again.
@@ -87,17 +93,6 @@ public:
 private:
   int NumberOfPorts;
   vtkInformationVector** Vectors;
-};
-
-/// The input of a fairing filter as gathered on the first rank. Collective.
-struct GatheredShapes
-{
-  GatheredShapes(
-    vtkMultiProcessController* controller, vtkInformationVector** input, int numberOfPorts);
-
-  ReplacedInput Input;
-  int RanksWithPoints = 0; ///< of port 0, on the first rank
-  std::string Refusal;     ///< why there is nothing to fair, or nothing
 };
 }
 

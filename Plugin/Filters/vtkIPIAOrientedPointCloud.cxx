@@ -183,13 +183,9 @@ int vtkIPIAOrientedPointCloud::FillInputPortInformation(int, vtkInformation* inf
 int vtkIPIAOrientedPointCloud::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  vtkMultiProcessController* controller = ipia::parallelController();
-  if (!controller)
-  {
-    return this->Superclass::RequestUpdateExtent(request, input, output);
-  }
-  ipia::requestOwnPart(controller, input[0]->GetInformationObject(0));
-  return 1;
+  return ipia::requestOwnParts(input, this->GetNumberOfInputPorts())
+    ? 1
+    : this->Superclass::RequestUpdateExtent(request, input, output);
 }
 
 vtkSmartPointer<vtkDataArray> vtkIPIAOrientedPointCloud::Estimate(vtkPolyData* points)

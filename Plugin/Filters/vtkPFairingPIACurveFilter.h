@@ -12,16 +12,9 @@
 #ifndef vtkPFairingPIACurveFilter_h
 #define vtkPFairingPIACurveFilter_h
 
+#include "IPIAFairingPanel.h"
 #include "vtkFairingPIACurveFilter.h"
 #include "vtkFiltersIPIAParaViewModule.h" // for the export macro
-
-#include <memory> // for std::unique_ptr
-#include <string> // for std::string
-
-namespace ipia
-{
-class HiddenArrays;
-}
 
 class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPFairingPIACurveFilter : public vtkFairingPIACurveFilter
 {
@@ -32,20 +25,28 @@ public:
   ///@{
   /**
    * Names in place of SetInputArrayToProcess 1, 2 and 3: weights of the control points on port 1
-   * (default FairingWeight), which of these may move if UseMovablePoints is on, and the parameters
-   * of the data, of one component. A name that no array has is no array.
+   * (default FairingWeight), which of these may move, both if they are to be used, and the
+   * parameters of the data, of one component. A name that no array has is no array.
    */
-  void SetControlPointWeightsArray(const char* name);
-  void SetMovablePointsArray(const char* name);
-  void SetParametersArray(const char* name);
+  void SetControlPointWeightsArray(const char* name) { this->Arrays.Weights.SetName(name); }
+  void SetMovablePointsArray(const char* name) { this->Arrays.Movable.SetName(name); }
+  void SetParametersArray(const char* name) { this->Arrays.Take(3, name); }
+  ///@}
+
+  ///@{
+  /**
+   * Whether the control points have weights of their own. Default on.
+   */
+  void SetUseControlPointWeights(bool use) { this->Arrays.Weights.SetUse(use); }
+  bool GetUseControlPointWeights() const { return this->Arrays.Weights.GetUse(); }
   ///@}
 
   ///@{
   /**
    * Whether only the movable points move. Default off: all.
    */
-  void SetUseMovablePoints(bool use);
-  vtkGetMacro(UseMovablePoints, bool);
+  void SetUseMovablePoints(bool use) { this->Arrays.Movable.SetUse(use); }
+  bool GetUseMovablePoints() const { return this->Arrays.Movable.GetUse(); }
   ///@}
 
   vtkTypeBool ProcessRequest(
@@ -65,9 +66,7 @@ private:
   vtkPFairingPIACurveFilter(const vtkPFairingPIACurveFilter&) = delete;
   void operator=(const vtkPFairingPIACurveFilter&) = delete;
 
-  bool UseMovablePoints;
-  std::string MovablePoints;
-  std::unique_ptr<ipia::HiddenArrays> Arrays;
+  ipia::FairingArrays Arrays;
 };
 
 #endif

@@ -13,16 +13,9 @@
 #ifndef vtkPFairingPIASurfaceFilter_h
 #define vtkPFairingPIASurfaceFilter_h
 
+#include "IPIAFairingPanel.h"
 #include "vtkFairingPIASurfaceFilter.h"
 #include "vtkFiltersIPIAParaViewModule.h" // for the export macro
-
-#include <memory> // for std::unique_ptr
-#include <string> // for std::string
-
-namespace ipia
-{
-class HiddenArrays;
-}
 
 class VTKFILTERSIPIAPARAVIEW_EXPORT vtkPFairingPIASurfaceFilter : public vtkFairingPIASurfaceFilter
 {
@@ -33,21 +26,32 @@ public:
   ///@{
   /**
    * Names in place of SetInputArrayToProcess 1, 2 and 3: weights of the control points on port 1
-   * (default FairingWeight), which of these may move if UseMovablePoints is on, and the parameters
-   * of the data, of two components, (u, v); empty (the default): the active texture coordinates. A
-   * name that no array has is no array.
+   * (default FairingWeight), which of these may move, both if they are to be used, and the
+   * parameters of the data, of two components, (u, v); empty (the default): the active texture
+   * coordinates. A name that no array has is no array.
    */
-  void SetControlPointWeightsArray(const char* name);
-  void SetMovablePointsArray(const char* name);
-  void SetParametersArray(const char* name);
+  void SetControlPointWeightsArray(const char* name) { this->Arrays.Weights.SetName(name); }
+  void SetMovablePointsArray(const char* name) { this->Arrays.Movable.SetName(name); }
+  void SetParametersArray(const char* name)
+  {
+    this->Arrays.TakeOr("Active texture coordinates", 3, name);
+  }
+  ///@}
+
+  ///@{
+  /**
+   * Whether the control points have weights of their own. Default on.
+   */
+  void SetUseControlPointWeights(bool use) { this->Arrays.Weights.SetUse(use); }
+  bool GetUseControlPointWeights() const { return this->Arrays.Weights.GetUse(); }
   ///@}
 
   ///@{
   /**
    * Whether only the movable points move. Default off: all.
    */
-  void SetUseMovablePoints(bool use);
-  vtkGetMacro(UseMovablePoints, bool);
+  void SetUseMovablePoints(bool use) { this->Arrays.Movable.SetUse(use); }
+  bool GetUseMovablePoints() const { return this->Arrays.Movable.GetUse(); }
   ///@}
 
   vtkTypeBool ProcessRequest(
@@ -67,9 +71,7 @@ private:
   vtkPFairingPIASurfaceFilter(const vtkPFairingPIASurfaceFilter&) = delete;
   void operator=(const vtkPFairingPIASurfaceFilter&) = delete;
 
-  bool UseMovablePoints;
-  std::string MovablePoints;
-  std::unique_ptr<ipia::HiddenArrays> Arrays;
+  ipia::FairingArrays Arrays;
 };
 
 #endif

@@ -2,7 +2,6 @@
 #include "vtkPIPIAImplicitFitter.h"
 
 #include "IPIAGather.h"
-#include "IPIAPanel.h"
 
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
@@ -48,10 +47,8 @@ void announce(const Announcement& numbers, vtkInformation* info)
 }
 
 vtkPIPIAImplicitFitter::vtkPIPIAImplicitFitter()
-  : UsePointBounds(true)
-  , ModelBoundsOrigin{ 0, 0, 0 }
-  , ModelBoundsLength{ 1, 1, 1 }
-  , ExtraValues(new ipia::ExtraValuesChoice)
+  : Box(this)
+  , Arrays(this)
   , Copies(new ipia::SteadyCopy[2])
   , RanksWithPoints(0)
 {
@@ -59,50 +56,10 @@ vtkPIPIAImplicitFitter::vtkPIPIAImplicitFitter()
 
 vtkPIPIAImplicitFitter::~vtkPIPIAImplicitFitter() = default;
 
-void vtkPIPIAImplicitFitter::SetUsePointBounds(bool use)
-{
-  this->UsePointBounds = use;
-  this->ApplyModelBounds();
-}
-
-void vtkPIPIAImplicitFitter::SetModelBoundsOrigin(double x, double y, double z)
-{
-  const double origin[3] = { x, y, z };
-  std::copy_n(origin, 3, this->ModelBoundsOrigin);
-  this->ApplyModelBounds();
-}
-
-void vtkPIPIAImplicitFitter::SetModelBoundsLength(double x, double y, double z)
-{
-  const double length[3] = { x, y, z };
-  std::copy_n(length, 3, this->ModelBoundsLength);
-  this->ApplyModelBounds();
-}
-
-void vtkPIPIAImplicitFitter::ApplyModelBounds()
-{
-  const auto bounds =
-    ipia::boundsOfBox(this->UsePointBounds, this->ModelBoundsOrigin, this->ModelBoundsLength);
-  this->SetModelBounds(bounds.data());
-}
-
-void vtkPIPIAImplicitFitter::SetExtraValuesArray(const char* name)
-{
-  this->ExtraValues->Take(this, name);
-}
-
 void vtkPIPIAImplicitFitter::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
-  if (index == 0 && ipia::isUnchosen(index, name))
-  {
-    this->Superclass::SetInputArrayToProcess(
-      index, port, connection, association, vtkDataSetAttributes::NORMALS);
-  }
-  else
-  {
-    this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
-  }
+  ipia::setArrayOrNormals(this, index, port, connection, association, name);
 }
 
 void vtkPIPIAImplicitFitter::BringInputUpToDate(vtkInformation* outInfo)
@@ -180,26 +137,16 @@ int vtkPIPIAImplicitFitter::RequestInformation(
 vtkTypeBool vtkPIPIAImplicitFitter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  const ipia::ExtraValuesChoice::Shown shown(*this->ExtraValues, this);
+  const ipia::HiddenArrays::Shown shown(this->Arrays);
   return this->Superclass::ProcessRequest(request, input, output);
 }
 
 int vtkPIPIAImplicitFitter::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  vtkMultiProcessController* controller = ipia::parallelController();
-  if (!controller)
-  {
-    return this->Superclass::RequestUpdateExtent(request, input, output);
-  }
-  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
-  {
-    for (int i = 0; i < input[port]->GetNumberOfInformationObjects(); ++i)
-    {
-      ipia::requestOwnPart(controller, input[port]->GetInformationObject(i));
-    }
-  }
-  return 1;
+  return ipia::requestOwnParts(input, this->GetNumberOfInputPorts())
+    ? 1
+    : this->Superclass::RequestUpdateExtent(request, input, output);
 }
 
 int vtkPIPIAImplicitFitter::RequestData(
@@ -234,6 +181,5 @@ int vtkPIPIAImplicitFitter::RequestData(
 void vtkPIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  ipia::printBox(
-    os, indent, this->UsePointBounds, this->ModelBoundsOrigin, this->ModelBoundsLength);
+  this->Box.Print(os, indent);
 }

@@ -20,6 +20,8 @@
 #ifndef vtkPIPIAImplicitFitter_h
 #define vtkPIPIAImplicitFitter_h
 
+#include "IPIADomainBox.h"
+#include "IPIAPanelArrays.h"
 #include "vtkFiltersIPIAParaViewModule.h" // for the export macro
 #include "vtkIPIAImplicitFitter.h"
 #include "vtkSmartPointer.h" // for the gathered points
@@ -28,7 +30,6 @@
 
 namespace ipia
 {
-class ExtraValuesChoice;
 class ReplacedInput;
 class SteadyCopy;
 }
@@ -45,23 +46,23 @@ public:
    * Whether the domain is derived from the points (and Padding); otherwise it is the box below.
    * Default on.
    */
-  void SetUsePointBounds(bool use);
-  vtkGetMacro(UsePointBounds, bool);
+  void SetUsePointBounds(bool use) { this->Box.SetUsePointBounds(use); }
+  bool GetUsePointBounds() const { return this->Box.GetUsePointBounds(); }
   ///@}
 
   ///@{
   /**
    * Lower corner and side lengths of the domain, world units. Default: the unit cube.
    */
-  void SetModelBoundsOrigin(double x, double y, double z);
-  void SetModelBoundsLength(double x, double y, double z);
-  vtkGetVector3Macro(ModelBoundsOrigin, double);
-  vtkGetVector3Macro(ModelBoundsLength, double);
+  void SetModelBoundsOrigin(double x, double y, double z) { this->Box.SetOrigin(x, y, z); }
+  void SetModelBoundsLength(double x, double y, double z) { this->Box.SetLength(x, y, z); }
+  double* GetModelBoundsOrigin() { return this->Box.GetOrigin(); }
+  double* GetModelBoundsLength() { return this->Box.GetLength(); }
   ///@}
 
   /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the
   /// default) stands for these. Takes the place of SetInputArrayToProcess 2.
-  void SetExtraValuesArray(const char* name);
+  void SetExtraValuesArray(const char* name) { this->Arrays.TakeOr("Active scalars", 2, name); }
 
   using vtkAlgorithm::SetInputArrayToProcess;
 
@@ -84,19 +85,14 @@ protected:
   int RequestData(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
 
-  bool UsePointBounds;
-  double ModelBoundsOrigin[3];
-  double ModelBoundsLength[3];
-
 private:
   vtkPIPIAImplicitFitter(const vtkPIPIAImplicitFitter&) = delete;
   void operator=(const vtkPIPIAImplicitFitter&) = delete;
 
-  void ApplyModelBounds();
-
   std::unique_ptr<ipia::ReplacedInput> Steady(vtkInformationVector** input);
 
-  std::unique_ptr<ipia::ExtraValuesChoice> ExtraValues;
+  ipia::DomainBox Box;
+  ipia::HiddenArrays Arrays;
   std::unique_ptr<ipia::SteadyCopy[]> Copies; // of each input port
 
   vtkSmartPointer<vtkDataObject> GatheredPoints[2]; // of each input port, on the first rank

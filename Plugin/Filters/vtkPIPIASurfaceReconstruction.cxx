@@ -2,7 +2,6 @@
 #include "vtkPIPIASurfaceReconstruction.h"
 
 #include "IPIAGather.h"
-#include "IPIAPanel.h"
 #include "vtkIPIAImplicitFitter.h"
 
 #include "vtkDataObject.h"
@@ -12,46 +11,15 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
-#include <algorithm>
-
 vtkStandardNewMacro(vtkPIPIASurfaceReconstruction);
 
 vtkPIPIASurfaceReconstruction::vtkPIPIASurfaceReconstruction()
-  : UsePointBounds(true)
-  , ModelBoundsOrigin{ 0, 0, 0 }
-  , ModelBoundsLength{ 1, 1, 1 }
-  , ExtraValues(new ipia::ExtraValuesChoice)
+  : Box(this->GetFitter())
+  , Arrays(this)
 {
 }
 
 vtkPIPIASurfaceReconstruction::~vtkPIPIASurfaceReconstruction() = default;
-
-void vtkPIPIASurfaceReconstruction::SetUsePointBounds(bool use)
-{
-  this->UsePointBounds = use;
-  this->ApplyModelBounds();
-}
-
-void vtkPIPIASurfaceReconstruction::SetModelBoundsOrigin(double x, double y, double z)
-{
-  const double origin[3] = { x, y, z };
-  std::copy_n(origin, 3, this->ModelBoundsOrigin);
-  this->ApplyModelBounds();
-}
-
-void vtkPIPIASurfaceReconstruction::SetModelBoundsLength(double x, double y, double z)
-{
-  const double length[3] = { x, y, z };
-  std::copy_n(length, 3, this->ModelBoundsLength);
-  this->ApplyModelBounds();
-}
-
-void vtkPIPIASurfaceReconstruction::ApplyModelBounds()
-{
-  const auto bounds =
-    ipia::boundsOfBox(this->UsePointBounds, this->ModelBoundsOrigin, this->ModelBoundsLength);
-  this->GetFitter()->SetModelBounds(bounds.data());
-}
 
 void vtkPIPIASurfaceReconstruction::SetGridSize(int x, int y, int z)
 {
@@ -158,48 +126,25 @@ void vtkPIPIASurfaceReconstruction::SetStepSize(double value)
   this->GetFitter()->SetStepSize(value);
 }
 
-void vtkPIPIASurfaceReconstruction::SetExtraValuesArray(const char* name)
-{
-  this->ExtraValues->Take(this, name);
-}
-
 void vtkPIPIASurfaceReconstruction::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {
-  if (index == 0 && ipia::isUnchosen(index, name))
-  {
-    this->Superclass::SetInputArrayToProcess(
-      index, port, connection, association, vtkDataSetAttributes::NORMALS);
-  }
-  else
-  {
-    this->Superclass::SetInputArrayToProcess(index, port, connection, association, name);
-  }
+  ipia::setArrayOrNormals(this, index, port, connection, association, name);
 }
 
 vtkTypeBool vtkPIPIASurfaceReconstruction::ProcessRequest(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  const ipia::ExtraValuesChoice::Shown shown(*this->ExtraValues, this);
+  const ipia::HiddenArrays::Shown shown(this->Arrays);
   return this->Superclass::ProcessRequest(request, input, output);
 }
 
 int vtkPIPIASurfaceReconstruction::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
 {
-  vtkMultiProcessController* controller = ipia::parallelController();
-  if (!controller)
-  {
-    return this->Superclass::RequestUpdateExtent(request, input, output);
-  }
-  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
-  {
-    for (int i = 0; i < input[port]->GetNumberOfInformationObjects(); ++i)
-    {
-      ipia::requestOwnPart(controller, input[port]->GetInformationObject(i));
-    }
-  }
-  return 1;
+  return ipia::requestOwnParts(input, this->GetNumberOfInputPorts())
+    ? 1
+    : this->Superclass::RequestUpdateExtent(request, input, output);
 }
 
 int vtkPIPIASurfaceReconstruction::RequestData(
@@ -237,6 +182,5 @@ int vtkPIPIASurfaceReconstruction::RequestData(
 void vtkPIPIASurfaceReconstruction::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  ipia::printBox(
-    os, indent, this->UsePointBounds, this->ModelBoundsOrigin, this->ModelBoundsLength);
+  this->Box.Print(os, indent);
 }

@@ -122,8 +122,12 @@ def test_a_later_round_takes_arrays_of_the_control_points():
         later.MovablePoints, later.UseMovablePoints = "movable", 1
         moved = np.abs(controls_of(later) - points).max(axis=1)
         assert moved[~movable].max() == 0 and moved[movable].max() > 1e-6, moved
-        # No such array: Fairing Weight holds.
-        later.UseMovablePoints, later.ControlPointWeights = 0, "None"
+        # Without them Fairing Weight holds, as without such an array.
+        later.UseMovablePoints, later.UseControlPointWeights = 0, 0
+        assert np.abs(controls_of(later) - points).max() < 1e-9
+        later.UseControlPointWeights = 1
+        assert np.abs(controls_of(later) - points).max() > 1e-6
+        later.ControlPointWeights = "None"
         assert np.abs(controls_of(later) - points).max() < 1e-9
 
 

@@ -24,6 +24,8 @@ PROPERTIES = (PANEL + "/scrollArea/qt_scrollarea_viewport/scrollAreaWidgetConten
               "/ProxyPanel")
 SHELL = WINDOW + "/pythonShellDock/pythonShell"
 SIZE = (1400, 1000)
+ORANGE = (232, 115, 26)  # of Plugin/IPIA/Icons
+MENU_PART = "560x450+190+0"
 PANEL_WIDTH = 430  # pixels, that every property can be read
 
 events = []
@@ -64,7 +66,7 @@ noted = {{
     "points": source.GetDataInformation().GetNumberOfPoints(),
     "cells": source.GetDataInformation().GetNumberOfCells(),
 }}
-for name in ("GridSize", "FairingWeight", "UsePointBounds", "Normals"):
+for name in ("GridSize", "FairingWeight", "UsePointBounds", "Normals", "UseControlPointWeights"):
     if hasattr(source, name):
         value = getattr(source, name)
         noted[name] = list(value) if hasattr(value, "__len__") else value
@@ -81,6 +83,23 @@ def note(name):
                  NOTE.format(noted=path(f"{name}.json"), picture=path(f"{name}.png")))
 
 
+# The shell waits for menus to close: pictures are taken meanwhile, and the player pauses.
+MENU = f"""
+import subprocess
+subprocess.Popen(
+    ["sh", "-c",
+     'for i in 1 2 3 4 5 6 7 8 9; do sleep 1; import -silent -window root "$0/menu$i.png"; done',
+     {FOLDER!r}])
+"""
+LATER_ROUND = """
+from paraview import servermanager, simple
+data = simple.Ellipse(Resolution=100)
+first = simple.FairingPIACurve(Input=data)
+first.UpdatePipeline()
+again = simple.FairingPIACurve(Input=data, ControlPoints=servermanager.OutputPort(first, 1))
+simple.Show(again)
+simple.SetActiveSource(again)
+"""
 ARRANGE = f"""
 import subprocess
 def xdotool(*words):
@@ -108,6 +127,10 @@ def write_events(scan):
     # A file of points without cells shows nothing as a surface.
     event(WINDOW + "/representationToolbar/displayRepresentation/comboBox", "set_string", "Point Gaussian")
     note("cloud")
+    run_in_shell("menu.py", MENU)
+    event(WINDOW + "/menubar", "activate", "menuFilters")
+    event(WINDOW + "/menubar/menuFilters", "activate", "IPIA")
+    event(WINDOW, "pause", "5000")
     event(WINDOW + "/menubar/menuFilters/IPIA", "activate", "IPIASurfaceReconstruction")
     note("panel")
     apply()
@@ -132,6 +155,14 @@ def write_events(scan):
     event(PROPERTIES + "/GridSize/LineEdit0", "set_string", "2")
     apply()
     note("refused")
+    # A later round of fairing, with the weights of the one before and without.
+    run_in_shell("later_round.py", LATER_ROUND)
+    event(PANEL + "/SearchBox/AdvancedButton", "set_boolean", "true")
+    apply()
+    note("weights")
+    event(PROPERTIES + "/UseControlPointWeights/CheckBox", "set_boolean", "false")
+    apply()
+    note("no_weights")
     with open(path("events.xml"), "w", encoding="utf-8") as file:
         file.write('<?xml version="1.0" ?>\n<pqevents>\n' + "\n".join(events) + "\n</pqevents>\n")
 
@@ -148,7 +179,7 @@ def run_paraview(home):
     screen = f"-noreset -screen 0 {SIZE[0]}x{SIZE[1]}x24"
     command = ["xvfb-run", "-a", "-s", screen, os.path.join(os.environ["IPIA_PARAVIEW_BIN"], "paraview"),
                "-stylesheet", path("wide.qss"), "--test-script", path("events.xml"), "--test-directory", path("."), "--exit"]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=150,
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=270,
                           check=False)
     output = done.stdout + done.stderr
     assert "Success =  true" in output, output
@@ -175,7 +206,28 @@ def share_of_surface(name):
     return warm.mean()
 
 
+def icons(name):
+    """How many groups of rows of the screen a menu brings the orange of the icons to."""
+    def orange(picture):
+        return np.abs(pixels(picture) - ORANGE).max(axis=2) < 30
+
+    rows = np.flatnonzero((orange(name) & ~orange("cloud")).any(axis=1))
+    return 1 + np.count_nonzero(np.diff(rows) > 8) if len(rows) else 0
+
+
+def menu():
+    """The picture that has the open menu with an icon for each filter."""
+    found = {name: icons(name) for name in (f"menu{i}" for i in range(1, 10))}
+    assert 5 in found.values(), found
+    return next(name for name, count in found.items() if count == 5)
+
+
 def check(output):
+    menu()
+    for name, use in (("weights", 1), ("no_weights", 0)):
+        assert noted(name)["UseControlPointWeights"] == use, (name, noted(name))
+        assert noted(name)["points"] > 0, (name, noted(name))
+    assert output.count("ERR|") == 1, output  # the refusal
     for name in ("cloud", "panel", "surface", "coarse", "undone", "box", "advanced", "refused"):
         assert pixels(name).shape == (SIZE[1], SIZE[0], 3), name
     cloud, surface, coarse, undone = (noted(n) for n in ("cloud", "surface", "coarse", "undone"))
@@ -203,6 +255,8 @@ def keep(folder):
     for name, crop in (("cloud", None), ("surface", None), ("box", None), ("refused", None)):
         subprocess.run(["convert", path(f"{name}.png"), "-resize", "1000x", *colours,
                         os.path.join(folder, f"paraview-{name}.png")], check=True)
+    subprocess.run(["convert", path(f"{menu()}.png"), "-crop", MENU_PART, "+repage", *colours,
+                    os.path.join(folder, "paraview-menu.png")], check=True)
     for name in ("panel", "advanced"):
         subprocess.run(["convert", path(f"{name}.png"), "-crop", f"{PANEL_WIDTH - 10}x{SIZE[1] - 440}+0+400",
                         "+repage", *colours, os.path.join(folder, f"paraview-{name}.png")], check=True)

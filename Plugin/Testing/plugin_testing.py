@@ -90,6 +90,27 @@ def fetch(proxy, port=0):
     return servermanager.Fetch(servermanager.OutputPort(proxy.SMProxy, port) if port else proxy)
 
 
+def faired():
+    """The fairing filters on the files of TestPluginParallel.py, by what they fair."""
+    lines = simple.XMLPartitionedPolydataReader(FileName=[output("lines.pvtp")])
+    pieces = simple.XMLPartitionedStructuredGridReader(FileName=[output("grid.pvts")])
+    whole = simple.XMLStructuredGridReader(FileName=[output("grid.vts")])
+    direct = {"Solver": "Sparse direct"}
+    curve = simple.FairingPIACurve(Input=lines, **direct)
+    grid = simple.FairingPIASurface(Input=pieces, Weights=["POINTS", "w"], **direct)
+    return {
+        "curves": curve,
+        "curves again": simple.FairingPIACurve(
+            Input=lines, ControlPoints=servermanager.OutputPort(curve, 1), **direct),
+        "one block": simple.FairingPIACurve(Input=simple.GroupDatasets(Input=[lines]), **direct),
+        "grid": grid,
+        "grid again": simple.FairingPIASurface(
+            Input=pieces, ControlPoints=servermanager.OutputPort(grid, 1), **direct),
+        "grid of one file": simple.FairingPIASurface(Input=whole, **direct),
+        "scattered": simple.FairingPIASurface(Input=lines, Parametrization="Given", **direct),
+    }
+
+
 class Messages:
     """Counts what would be in ParaView's message window."""
 
