@@ -74,8 +74,9 @@ void BrickOperator<Dim>::sweepRows(
 
 template <int Dim>
 void BrickOperator<Dim>::applyFairing(
-  const float* input, std::int32_t inputBricks, float sign, std::vector<float>& output) const
+  const float* input, std::int32_t inputBricks, float sign, BrickValues& output) const
 {
+  static constexpr std::array<float, BrickSize<Dim>> zeros{};
   const std::int32_t active = this->Bricks.numberOfActiveBricks();
   output.resize(static_cast<std::size_t>(active) * BrickSize<Dim>);
 #pragma omp parallel for schedule(static) num_threads(this->Threads)
@@ -103,14 +104,24 @@ void BrickOperator<Dim>::applyFairing(
       const std::int32_t id = neighbours[k];
       arguments.Input[k] = id != BrickLattice<Dim>::Absent && id < inputBricks
         ? input + static_cast<std::int64_t>(id) * BrickSize<Dim>
-        : nullptr;
+        : zeros.data();
     }
     dispatch<FairingKernel<Dim>>(arguments);
   }
 }
 
 template <int Dim>
-void BrickOperator<Dim>::residual(std::vector<float>& gradient) const
+void BrickOperator<Dim>::fill(BrickValues& values, float value) const
+{
+  const auto n = static_cast<std::int64_t>(this->Bricks.numberOfActiveBricks()) * BrickSize<Dim>;
+  values.resize(static_cast<std::size_t>(n));
+  parallelChunks(n, this->Threads,
+    [&](std::int64_t begin, std::int64_t end)
+    { std::fill_n(values.begin() + begin, end - begin, value); });
+}
+
+template <int Dim>
+void BrickOperator<Dim>::residual(BrickValues& gradient) const
 {
   const float* c = this->Bricks.coefficients().data();
   this->applyFairing(c, this->Bricks.numberOfBricks(), -1, gradient);
@@ -119,7 +130,7 @@ void BrickOperator<Dim>::residual(std::vector<float>& gradient) const
 }
 
 template <int Dim>
-void BrickOperator<Dim>::product(const std::vector<float>& p, std::vector<float>& product) const
+void BrickOperator<Dim>::product(const BrickValues& p, BrickValues& product) const
 {
   this->applyFairing(p.data(), this->Bricks.numberOfActiveBricks(), 1, product);
   this->sweepRows<static_cast<int>(Sweep::Product)>(
@@ -127,7 +138,7 @@ void BrickOperator<Dim>::product(const std::vector<float>& p, std::vector<float>
 }
 
 template <int Dim>
-void BrickOperator<Dim>::diagonal(std::vector<float>& diagonal) const
+void BrickOperator<Dim>::diagonal(BrickValues& diagonal) const
 {
   // Inside the lattice: (sum_a 2 s_a^2)^2 + sum_a 2 s_a^4 of the thin plate, sum_a 2 s_a^2 of the
   // membrane; at its border the exact values are smaller, which a preconditioner may ignore.
@@ -139,41 +150,44 @@ void BrickOperator<Dim>::diagonal(std::vector<float>& diagonal) const
   }
   const float fairing =
     this->Fairing.ThinPlate * (sum * sum + squares) + this->Fairing.Membrane * sum;
-  diagonal.assign(
-    static_cast<std::size_t>(this->Bricks.numberOfActiveBricks()) * BrickSize<Dim>, fairing);
+  this->fill(diagonal, fairing);
   this->sweepRows<static_cast<int>(Sweep::Diagonal)>(nullptr, 0, diagonal.data());
 }
 
 template <int Dim>
 double BrickOperator<Dim>::energy() const
 {
-  std::vector<float> values;
+  BrickValues values;
   this->evaluateWithGradient(this->Bricks.coefficients(), values);
-  double sum = 0;
-  for (const HermiteRow<Dim>& row : this->Rows.Rows)
-  {
-    const float* at = values.data() + static_cast<std::int64_t>(row.Source) * (1 + Dim);
-    const double miss = at[0] - row.Value;
-    sum += row.Weight * miss * miss;
-    for (int a = 0; a < Dim; ++a)
+  return parallelSum(static_cast<std::int64_t>(this->Rows.Rows.size()), this->Threads,
+    [&](std::int64_t begin, std::int64_t end)
     {
-      const double slope = at[1 + a] - row.Slope[a];
-      sum += static_cast<double>(row.GradientWeight) * this->AxisScale[a] * slope * slope;
-    }
-  }
-  return sum;
+      double sum = 0;
+      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+      {
+        const HermiteRow<Dim>& row = this->Rows.Rows[k];
+        const float* at = values.data() + static_cast<std::int64_t>(row.Source) * (1 + Dim);
+        const double miss = at[0] - row.Value;
+        sum += row.Weight * miss * miss;
+        for (int a = 0; a < Dim; ++a)
+        {
+          const double slope = at[1 + a] - row.Slope[a];
+          sum += static_cast<double>(row.GradientWeight) * this->AxisScale[a] * slope * slope;
+        }
+      }
+      return sum;
+    });
 }
 
 template <int Dim>
-void BrickOperator<Dim>::density(std::vector<float>& sums) const
+void BrickOperator<Dim>::density(BrickValues& sums) const
 {
-  sums.assign(static_cast<std::size_t>(this->Bricks.numberOfActiveBricks()) * BrickSize<Dim>, 0.F);
+  this->fill(sums, 0);
   this->sweepRows<static_cast<int>(Sweep::Density)>(nullptr, 0, sums.data());
 }
 
 template <int Dim>
-void BrickOperator<Dim>::evaluate(
-  const std::vector<float>& coefficients, std::vector<float>& values) const
+void BrickOperator<Dim>::evaluate(const BrickValues& coefficients, BrickValues& values) const
 {
   values.resize(this->Rows.Rows.size());
   this->sweepRows<static_cast<int>(Sweep::Value)>(coefficients.data(),
@@ -182,7 +196,7 @@ void BrickOperator<Dim>::evaluate(
 
 template <int Dim>
 void BrickOperator<Dim>::evaluateWithGradient(
-  const std::vector<float>& coefficients, std::vector<float>& values) const
+  const BrickValues& coefficients, BrickValues& values) const
 {
   values.resize(this->Rows.Rows.size() * (1 + Dim));
   this->sweepRows<static_cast<int>(Sweep::ValueAndSlope)>(coefficients.data(),

@@ -7,7 +7,9 @@
 #define ipia_FairingKernel_h
 
 #include "BrickOperator.h"
-#include "Dispatch.h"
+#include "RowRegisters.h"
+
+#include <cstring>
 
 namespace ipia
 {
@@ -15,12 +17,11 @@ namespace ipia
 /// K1 = D1^T D1 and K2 = D2^T D2 with differences that leave the lattice left out.
 struct EndStencils
 {
-  std::array<float, 3> First;
-  std::array<float, 5> Second;
+  std::array<float, 3> First{};
+  std::array<float, 5> Second{};
 
+  EndStencils() = default;
   EndStencils(std::int64_t i, std::int64_t n)
-    : First{}
-    , Second{}
   {
     const auto inside = [n](std::int64_t k) { return k >= 0 && k < n; };
     // Difference d joins coefficients d and d + 1.
@@ -51,7 +52,7 @@ struct EndStencils
 template <int Dim>
 struct FairingArguments
 {
-  /// The bricks around this one, nullptr where there is none.
+  /// The bricks around this one, of zeros where there is none.
   std::array<const float*, BrickLattice<Dim>::NeighbourCount> Input;
   float* Output;
   Index<Dim> First; ///< the first coefficient of the brick
@@ -81,14 +82,9 @@ struct FairingKernel
         float* to = in + WindowWidth * (y + WindowWidth * z);
         const float *low = arguments.Input[row], *middle = arguments.Input[row + 1],
                     *high = arguments.Input[row + 2];
-        to[0] = low ? low[inBrick + 2] : 0.F;
-        to[1] = low ? low[inBrick + 3] : 0.F;
-        for (int x = 0; x < BrickWidth; ++x)
-        {
-          to[2 + x] = middle ? middle[inBrick + x] : 0.F;
-        }
-        to[6] = high ? high[inBrick] : 0.F;
-        to[7] = high ? high[inBrick + 1] : 0.F;
+        std::memcpy(to, low + inBrick + 2, 2 * sizeof(float));
+        std::memcpy(to + 2, middle + inBrick, BrickWidth * sizeof(float));
+        std::memcpy(to + 6, high + inBrick, 2 * sizeof(float));
       }
     }
     bool interior = true;
@@ -139,22 +135,26 @@ private:
     }
     const float plate = arguments.Sign * arguments.Weights.ThinPlate;
     const float membrane = arguments.Sign * arguments.Weights.Membrane;
+    const auto load = [](const float* from)
+    {
+      Float4 v;
+      std::memcpy(&v, from, sizeof(v));
+      return v;
+    };
     for (int z = 0; z < (Dim == 3 ? BrickWidth : 1); ++z)
     {
       for (int y = 0; y < BrickWidth; ++y)
       {
         const float* p = once + 2 + WindowWidth * (y + 2 + (Dim == 3 ? WindowWidth * (z + 2) : 0));
-        float* out = arguments.Output + BrickWidth * (y + BrickWidth * z);
-        for (int x = 0; x < BrickWidth; ++x)
+        const Float4 middle = load(p);
+        Float4 v = centre * middle - scale[0] * (load(p - 1) + load(p + 1)) -
+          scale[1] * (load(p - WindowWidth) + load(p + WindowWidth));
+        if (Dim == 3)
         {
-          float v = centre * p[x] - scale[0] * (p[x - 1] + p[x + 1]) -
-            scale[1] * (p[x - WindowWidth] + p[x + WindowWidth]);
-          if (Dim == 3)
-          {
-            v -= scale[Dim - 1] * (p[x - Stride[2]] + p[x + Stride[2]]);
-          }
-          out[x] = plate * v + membrane * p[x];
+          v -= scale[Dim - 1] * (load(p - Stride[2]) + load(p + Stride[2]));
         }
+        const Float4 sum = plate * v + membrane * middle;
+        std::memcpy(arguments.Output + BrickWidth * (y + BrickWidth * z), &sum, sizeof(sum));
       }
     }
   }
@@ -163,6 +163,15 @@ private:
   {
     const float plate = arguments.Sign * arguments.Weights.ThinPlate;
     const float membrane = arguments.Sign * arguments.Weights.Membrane;
+    std::array<std::array<EndStencils, BrickWidth>, Dim> ofAxis;
+    for (int a = 0; a < Dim; ++a)
+    {
+      for (int i = 0; i < BrickWidth; ++i)
+      {
+        ofAxis[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)] =
+          EndStencils(arguments.First[a] + i, arguments.Size[a]);
+      }
+    }
     for (int k = 0; k < BrickSize<Dim>; ++k)
     {
       std::array<int, 3> local{ k & 3, k >> 2 & 3, k >> 4 };
@@ -175,7 +184,8 @@ private:
       {
         const std::int64_t i = arguments.First[a] + local[static_cast<std::size_t>(a)];
         inside = inside && i < arguments.Size[a];
-        const EndStencils stencils(i, arguments.Size[a]);
+        const EndStencils& stencils = ofAxis[static_cast<std::size_t>(a)][static_cast<std::size_t>(
+          local[static_cast<std::size_t>(a)])];
         const int stride = Stride[static_cast<std::size_t>(a)];
         const float s = arguments.AxisScale[a];
         first[a] = stencils.First;

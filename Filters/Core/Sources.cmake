@@ -8,7 +8,7 @@ foreach (name IN ITEMS
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()
 foreach (name IN ITEMS
-    BandMatrix CubicBasis Dispatch FairingKernel HermiteRows Lattice OutsideDomain Parallel RowKernel RowRegisters
-    SolverControl Types)
+    BandMatrix BulkVector CubicBasis Dispatch FairingKernel HermiteRows Lattice MortonOrder OutsideDomain Parallel
+    RowKernel RowRegisters SolverControl Types)
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()
