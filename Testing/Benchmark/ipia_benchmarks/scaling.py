@@ -120,8 +120,10 @@ def report(measurements, found):
         f"doubles a second, {figure(rates['1e9 multiply-adds/s, float'])}e9 of floats, "
         f"{figure(rates['memory, GB/s'])} GB/s of memory. Rows of values are in double, those of "
         "values and gradients in single precision.\n",
-        f"Sampling: {figure(found['sample']['ns/sample'])} ns a sample, "
-        f"{figure(found['sample']['times filling'])} times filling the memory.\n"])
+        "Sampling: " + "; with a far field ".join(
+            f"{figure(found[name]['ns/sample'])} ns a sample, "
+            f"{figure(found[name]['times filling'])} times filling the memory"
+            for name in ("sample/0", "sample/1")) + ".\n"])
 
 
 def main():
