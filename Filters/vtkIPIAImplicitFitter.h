@@ -127,6 +127,7 @@
 #include <memory>     // for std::unique_ptr
 #include <vector>     // for std::vector
 
+class vtkDataArraySelection;
 class vtkFieldData;
 class vtkIPIAImplicitFunction;
 class vtkPolyData;
@@ -430,6 +431,22 @@ public:
   void SetOutputScalarTypeToDouble() { this->SetOutputScalarType(VTK_DOUBLE); }
   ///@}
 
+  /**
+   * The point arrays of the input that are fitted beside f, by name. Arrays that it does not know
+   * are (its UnknownArraySetting is 1): disable those that are not wanted, or set that to 0 and
+   * enable those that are. Changes modify this filter and do not fit f again.
+   */
+  vtkDataArraySelection* GetPointDataArraySelection();
+
+  ///@{
+  /**
+   * Whether point arrays are fitted at all. Default on.
+   */
+  vtkSetMacro(FitPointArrays, bool);
+  vtkGetMacro(FitPointArrays, bool);
+  vtkBooleanMacro(FitPointArrays, bool);
+  ///@}
+
   ///@{
   /**
    * Results of the last fit, also in the field data of output 0, there under their names without
@@ -518,6 +535,7 @@ protected:
   bool GenerateGradient;
   bool GenerateSupport;
   int OutputScalarType;
+  bool FitPointArrays;
 
   int NumberOfIterationsUsed;
   double StepSizeUsed;
@@ -547,6 +565,7 @@ private:
   bool ContourBricks(int pointType, const std::function<bool(double)>& progress,
     vtkPolyData* surface, std::vector<vtkIdType>& component) const;
   const std::vector<std::array<double, 3>>& FittedPositions() const;
+  void EvaluateAttributes(vtkPolyData* surface);
 
   ipia::FitParameters Parameters() const;
 
@@ -554,6 +573,8 @@ private:
   bool Fit();
   template <int Dim>
   bool FitInDimension();
+  bool FitAttributes();
+  void WarnOfAttributes();
   void DiscardFit();
   void ResetResults();
   template <int Dim, typename ArrayType>

@@ -37,6 +37,9 @@
 #include "vtkNew.h"               // for vtkNew
 #include "vtkPolyDataAlgorithm.h"
 
+#include <vector> // for std::vector
+
+class vtkDataArraySelection;
 class vtkIPIAImplicitFitter;
 class vtkImageData;
 
@@ -60,6 +63,11 @@ public:
   void SetExtraRowsConnection(vtkAlgorithmOutput* output);
   void SetExtraRowsData(vtkPolyData* rows);
   ///@}
+
+  /**
+   * The fitter's choice of the point arrays that the surface has, see vtkIPIAImplicitFitter.
+   */
+  vtkDataArraySelection* GetPointDataArraySelection();
 
   ///@{
   /**
@@ -112,6 +120,7 @@ private:
   void MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled);
 
   vtkNew<vtkIPIAImplicitFitter> Fitter;
+  std::vector<vtkMTimeType> InputIdentity; // of what the fitter has copies of
 };
 
 #endif

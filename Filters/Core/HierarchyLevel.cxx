@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HierarchyLevel.h"
 
-#include "BrickOperator.h"
 #include "Parallel.h"
 
 #include <chrono>
@@ -23,6 +22,7 @@ constexpr double UnitDensity = 151. / 315;
 constexpr double LeastScale = 0.1;
 /// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
 constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
+}
 
 template <int Dim>
 HermiteRows<Dim> makeRows(
@@ -83,19 +83,8 @@ HermiteRows<Dim> makeRows(
   return rows;
 }
 
-double median(std::vector<float> values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Scales the weights so that the rows of an occupied cell weigh about 1 in all, and takes weight
-/// from rows that the coarser prediction misses by far, from those of parts too thin for the
-/// lattice, which the fairing is to hold together, and where the fairing is to count more.
 template <int Dim>
-void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, HermiteRows<Dim>& rows,
-  bool predicted, const HierarchicalOptions& options, int threads)
+double typicalDensity(const BrickLattice<Dim>& bricks, const HermiteRows<Dim>& rows, int threads)
 {
   const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
   std::vector<float> sums, density;
@@ -120,7 +109,28 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
   const double total = sumOver([](const HermiteRow<Dim>& row, double) { return row.Weight; });
   const double logarithms = sumOver(
     [](const HermiteRow<Dim>& row, double relative) { return row.Weight * std::log(relative); });
-  const double typical = total > 0 ? std::exp(logarithms / total) : 1.0;
+  return total > 0 ? std::exp(logarithms / total) : 1.0;
+}
+
+namespace
+{
+double median(std::vector<float> values)
+{
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Scales the weights so that the rows of an occupied cell weigh about 1 in all, and takes weight
+/// from rows that the coarser prediction misses by far, from those of parts too thin for the
+/// lattice, which the fairing is to hold together, and where the fairing is to count more.
+template <int Dim>
+void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, HermiteRows<Dim>& rows,
+  bool predicted, const HierarchicalOptions& options, int threads)
+{
+  const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
+  const auto n = static_cast<std::int64_t>(rows.Rows.size());
+  const double typical = typicalDensity(bricks, rows, threads);
 
   // f and its gradient, in knot spacings, by the coarser level.
   constexpr std::size_t stride = 1 + Dim;
@@ -167,8 +177,8 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
     [&](std::int64_t begin, std::int64_t end)
     { std::for_each(rows.Rows.begin() + begin, rows.Rows.begin() + end, weigh); });
 }
+}
 
-/// Conjugate gradients with the diagonal as preconditioner, on the active coefficients.
 template <int Dim>
 void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
   double tolerance, StoppingRule rule, int threads, const ProgressCallback& progress,
@@ -257,7 +267,6 @@ void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, in
       });
     ++report.NumberOfIterations;
   }
-}
 }
 
 template <int Dim>
@@ -460,6 +469,10 @@ template std::vector<Level<2>> makeLevels<2>(
   const Lattice<2>&, Samples<2>, const HierarchicalOptions&, int);
 template Samples<2> coarserData<2>(const Samples<2>&, int, int);
 template std::vector<BrickLattice<2>> makeBricks<2>(const std::vector<Level<2>>&);
+template HermiteRows<2> makeRows<2>(const Level<2>&, const BrickLattice<2>&, double, int);
+template double typicalDensity<2>(const BrickLattice<2>&, const HermiteRows<2>&, int);
+template void solveSystem<2>(const BrickOperator<2>&, BrickLattice<2>&, int, double, StoppingRule,
+  int, const ProgressCallback&, LevelReport&);
 template double trustInSlope<2>(const HermiteRow<2>&, const float*);
 template double occupiedCells<2>(const Level<2>&);
 template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&,
@@ -470,6 +483,10 @@ template std::vector<Level<3>> makeLevels<3>(
   const Lattice<3>&, Samples<3>, const HierarchicalOptions&, int);
 template Samples<3> coarserData<3>(const Samples<3>&, int, int);
 template std::vector<BrickLattice<3>> makeBricks<3>(const std::vector<Level<3>>&);
+template HermiteRows<3> makeRows<3>(const Level<3>&, const BrickLattice<3>&, double, int);
+template double typicalDensity<3>(const BrickLattice<3>&, const HermiteRows<3>&, int);
+template void solveSystem<3>(const BrickOperator<3>&, BrickLattice<3>&, int, double, StoppingRule,
+  int, const ProgressCallback&, LevelReport&);
 template double trustInSlope<3>(const HermiteRow<3>&, const float*);
 template double occupiedCells<3>(const Level<3>&);
 template LevelReport solveLevel<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&,
