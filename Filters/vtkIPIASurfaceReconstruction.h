@@ -21,6 +21,8 @@
  * - a Newton step x <- x - f grad f / |grad f|^2 of every vertex, at most a third of a sample
  *   spacing, which removes most of the error of linear contouring;
  * - point normals from the exact gradient of f, towards f > 0;
+ * - the point arrays of the input (colours, scalars, vectors) at its vertices, as smooth functions
+ *   v(x) fitted as vtkIPIAImplicitFitter tells, with the active attributes that they were;
  * - the component filter: components that hardly any data point is nearest to are left out;
  * - points in double precision where single would show, such as in map coordinates.
  *

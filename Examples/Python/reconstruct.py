@@ -5,7 +5,8 @@
     python3 reconstruct.py scan.ply --output ipia-output
 
 reads, reconstructs, measures and draws, and writes surface.vtp, surface.ply (single precision, no
-normals), f.vti and picture.png there. Where there is no display, which the picture needs, the script runs
+normals), f.vti and picture.png there. Point arrays of the file, such as colours, are on the surface, the
+colours also in surface.ply. Where there is no display, which the picture needs, the script runs
 itself under xvfb-run, if that is installed.
 """
 import argparse
@@ -231,6 +232,28 @@ def share_pointing_outward(points, normals):
     return np.mean(np.sum(normals[outermost] * directions, axis=1) > 0)
 
 
+def colours(data):
+    """The name of the red, green and blue values that VTK's readers give points, or None."""
+    for name in ("RGB", "RGBA"):
+        array = data.GetPointData().GetArray(name)
+        if array and array.GetDataTypeAsString() == "unsigned char":
+            return name
+    return None
+
+
+def with_normals_and_arrays(data):
+    """The points with normals and all the other point arrays, and how the normals came about."""
+    points, how = with_normals(data)
+    arrays = data.GetPointData()
+    for i in range(arrays.GetNumberOfArrays()):
+        array = arrays.GetAbstractArray(i)
+        if array.GetName() and array.GetName().lower() != "normals":
+            points.GetPointData().AddArray(array)
+    if colours(points):
+        points.GetPointData().SetActiveScalars(colours(points))
+    return points, how
+
+
 def with_normals(data):
     """The points with normals, and how these came about."""
     points = vtk_to_numpy(data.GetPoints().GetData()).astype(float)
@@ -380,7 +403,7 @@ def draw(data, surface, path):
     for i, (part, colour, text) in enumerate(views):
         mapper = vtkPolyDataMapper()
         mapper.SetInputData(part)
-        mapper.ScalarVisibilityOff()
+        mapper.SetScalarVisibility(colours(part) is not None)
         actor = vtkActor()
         actor.SetMapper(mapper)
         look = actor.GetProperty()
@@ -457,7 +480,7 @@ def reconstruct(path, folder, picture):
         if data.GetNumberOfPoints() == 0:
             raise UserError("it has no points")
     with Stage("normals"):
-        data, how = with_normals(data)
+        data, how = with_normals_and_arrays(data)
     print(f"  {data.GetNumberOfPoints():,} points; normals {how}")
 
     reconstruction = vtkIPIASurfaceReconstruction()
@@ -492,7 +515,11 @@ def reconstruct(path, folder, picture):
     }
     with Stage("write"):
         write(vtkXMLPolyDataWriter(), surface, files["surface"])
-        write(vtkPLYWriter(), surface, files["also"])
+        writer = vtkPLYWriter()
+        if colours(surface):
+            writer.SetArrayName(colours(surface))
+            writer.SetEnableAlpha(colours(surface) == "RGBA")
+        write(writer, surface, files["also"])
         write(vtkXMLImageDataWriter(), function.GetOutput(), files["function"])
     if picture:
         files["picture"] = os.path.join(folder, "picture.png")
