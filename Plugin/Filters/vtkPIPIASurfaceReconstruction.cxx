@@ -5,6 +5,7 @@
 #include "IPIAPanel.h"
 #include "vtkIPIAImplicitFitter.h"
 
+#include "vtkDataArraySelection.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -22,6 +23,8 @@ vtkPIPIASurfaceReconstruction::vtkPIPIASurfaceReconstruction()
   , ModelBoundsLength{ 1, 1, 1 }
   , ExtraValues(new ipia::ExtraValuesChoice)
 {
+  // The panel names the arrays that are wanted.
+  this->GetPointDataArraySelection()->SetUnknownArraySetting(0);
 }
 
 vtkPIPIASurfaceReconstruction::~vtkPIPIASurfaceReconstruction() = default;
