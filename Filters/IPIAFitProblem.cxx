@@ -32,7 +32,7 @@ constexpr double BytesPerWeight = 64, BytesPerRationalSample = 16, RationalSlice
 constexpr double BytesPerBrick = 2048, BytesPerAbsentBrick = 16;
 /// And of point arrays: per point, per point and component, and per brick and component; per sample
 /// and coefficient while a component is sampled.
-constexpr double BytesPerArrayPoint = 320, BytesPerArrayValue = 16, BytesPerBrickOfArray = 512;
+constexpr double BytesPerArrayPoint = 320, BytesPerArrayValue = 16, BytesPerBrickOfArray = 1024;
 constexpr double BytesPerArraySample = 8, BytesPerArrayCoefficient = 16;
 /// Bricks around a brick with data, and layers of them on both sides of a surface that crosses the
 /// lattice twice along every axis.
