@@ -102,15 +102,15 @@
  *
  * ### Output
  * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`, and the point
- * arrays of the input; the results below as field data. Origin and last point are the ends of the domain. Any sub-extent can be
- * asked for. Port 1: the points that were fitted, with all their arrays, and `Residual` (f) and
- * `Distance` (f / |grad f|). Port 2: the control lattice, a vtkImageData with point array
- * `Coefficient`, with UniformRational also `Weight`, origin lo - h, spacing h and dimensions N, on
- * domain [lo, hi], and the far field
- * as field data: `FarField`, one signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1)
- * (2 (N_z - 3) + 1) boxes (no third factor in 2-D), x fastest, -1 or 1 where f is that sign times
- * `FarFieldMagnitude` (one double), 0 where the spline counts. vtkIPIAImplicitFunction takes it;
- * vtkImageBSplineInterpolator of degree 3 interpolates a spline without weights.
+ * arrays of the input; the results below as field data. Origin and last point are the ends of the
+ * domain. Any sub-extent can be asked for. Port 1: the points that were fitted, with all their
+ * arrays, and `Residual` (f) and `Distance` (f / |grad f|). Port 2: the control lattice, a
+ * vtkImageData with point array `Coefficient`, with UniformRational also `Weight`, origin lo - h,
+ * spacing h and dimensions N, on domain [lo, hi], and the far field as field data: `FarField`, one
+ * signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1) (2 (N_z - 3) + 1) boxes (no third
+ * factor in 2-D), x fastest, -1 or 1 where f is that sign times `FarFieldMagnitude` (one double), 0
+ * where the spline counts. vtkIPIAImplicitFunction takes it; vtkImageBSplineInterpolator of degree
+ * 3 interpolates a spline without weights.
  *
  * ### Two dimensions
  * If all points lie in a plane perpendicular to an axis and their normals in that plane, f is a

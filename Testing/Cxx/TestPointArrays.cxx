@@ -232,7 +232,7 @@ void TestDefaultChoice(Checks& checks)
   nameless->SetName(nullptr);
   cloud->GetPointData()->AddArray(nameless);
   vtkNew<vtkIPIASurfaceReconstruction> reconstruction;
-  ipiatest::MessageObserver* messages = ipiatest::MessageObserver::New();
+  vtkNew<ipiatest::MessageObserver> messages;
   messages->Watch(reconstruction);
   reconstruction->SetInputData(cloud);
   const int points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
@@ -243,7 +243,6 @@ void TestDefaultChoice(Checks& checks)
   checks.Equal(data->GetNumberOfArrays(), 2, "arrays: normals and the one that is a field");
   checks.That(data->GetArray("kept") != nullptr, "the array that is a field is there");
   messages->CheckSilence(checks, "default choice");
-  messages->Delete();
 }
 
 /// Arrays are chosen by name, all can be turned off, and f is not fitted again for it.
