@@ -135,11 +135,20 @@ def looks_like_colours(columns):
     )
 
 
+def coloured(data, columns):
+    """The data with red, green and blue from 0 to 255, as vtkPLYReader would have them."""
+    array = numpy_to_vtk(np.ascontiguousarray(columns, dtype=np.uint8), deep=True)
+    array.SetName("RGB")
+    data.GetPointData().SetScalars(array)
+    return data
+
+
 def read_text(path):
     """Points, and normals where columns 4 to 6 are normals, of a file of one point a line.
 
     The first line may be the number of points. Then .pwn files may hold the points and after them
-    the normals, each with three columns. Further columns (intensity, colour) are not used.
+    the normals, each with three columns. Red, green and blue (0 to 255) may follow the points, an
+    intensity after these, or the normals; further columns are not used.
     """
     with open(path, encoding="utf-8") as file:
         lines = file.read().replace(",", " ").splitlines()
@@ -163,10 +172,16 @@ def read_text(path):
         return polydata(table[:count], table[count:])
     if count is not None and count != len(table):
         raise UserError(f"its first line announces {count} points, but {len(table)} lines follow")
-    intensity_and_colours = width == 7 and looks_like_colours(table[:, 4:])
-    if width < 6 or intensity_and_colours or looks_like_colours(table[:, 3:6]):
+    if width == 7 and looks_like_colours(table[:, 4:]):
+        return coloured(polydata(table[:, :3]), table[:, 4:])
+    if width >= 6 and looks_like_colours(table[:, 3:6]):
+        return coloured(polydata(table[:, :3]), table[:, 3:6])
+    if width < 6:
         return polydata(table[:, :3])
-    return polydata(table[:, :3], table[:, 3:6])
+    data = polydata(table[:, :3], table[:, 3:6])
+    if width >= 9 and looks_like_colours(table[:, 6:9]):
+        return coloured(data, table[:, 6:9])
+    return data
 
 
 def read(path):

@@ -95,6 +95,16 @@ class TestReconstruct(unittest.TestCase):
         else:
             self.assertIsNone(data.GetPointData().GetNormals())
 
+    def test_colours_of_text_files_are_read(self):
+        rgb = np.tile([[10, 20, 250]], (len(self.points), 1))
+        intensity = np.ones((len(self.points), 1))
+        for columns in ((rgb,), (intensity, rgb), (self.normals, rgb), (self.normals, rgb, intensity)):
+            data = self.script.read(self.file("points.xyz", np.hstack((self.points, *columns))))
+            self.assertEqual(data.GetPointData().GetArray("RGB").GetTuple(7), (10, 20, 250))
+            self.assertEqual(data.GetPointData().GetNormals() is None, columns[0] is not self.normals)
+        data = self.script.read(self.file("plain.xyz", np.hstack((self.points, self.normals))))
+        self.assertIsNone(data.GetPointData().GetArray("RGB"))
+
     def test_colours_of_a_ply_file_are_in_the_results(self):
         data = self.script.polydata(self.points, self.normals)
         red = np.where(self.points[:, :1] > 0, 250, 20)
