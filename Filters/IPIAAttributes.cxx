@@ -145,10 +145,6 @@ bool AttributeFields::fitInDimension(const FitProblem& problem, const ProgressCa
     Eigen::MatrixXd values;
     std::vector<char> has;
     const vtkIdType notFinite = readArray(cloud, array, values, has);
-    if (notFinite > 0)
-    {
-      left += text(left.empty() ? "" : ", ", notFinite, " of \"", array.Prototype->GetName(), "\"");
-    }
     bool anyWeight = false;
     for (std::size_t k = 0; k < has.size() && !anyWeight; ++k)
     {
@@ -159,6 +155,10 @@ bool AttributeFields::fitInDimension(const FitProblem& problem, const ProgressCa
       this->warn(text("The point array \"", array.Prototype->GetName(),
         "\" has no value that could be fitted; results do not have it."));
       continue;
+    }
+    if (notFinite > 0)
+    {
+      left += text(left.empty() ? "" : ", ", notFinite, " of \"", array.Prototype->GetName(), "\"");
     }
     auto group = std::find_if(
       groups.begin(), groups.end(), [&has](const Group& other) { return other.Has == has; });

@@ -3,6 +3,7 @@
  * The point arrays of the input on the image and on the surface: their values, which of them, and
  * that f has nothing to do with them.
  */
+#include "IPIATestColours.h"
 #include "IPIATestPipeline.h"
 #include "IPIATestShapes.h"
 #include "IPIATestUtilities.h"
@@ -15,11 +16,9 @@
 #include "vtkFlyingEdges3D.h"
 #include "vtkIdTypeArray.h"
 #include "vtkMultiBlockDataSet.h"
-#include "vtkPointInterpolator.h"
 #include "vtkSOADataArrayTemplate.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkVoronoiKernel.h"
 
 #include <omp.h>
 
@@ -517,60 +516,9 @@ void TestProgressAndAbort(Checks& checks)
 void TestNoisyColours(Checks& checks)
 {
   const auto shape = ipiatest::DoubleTorus(std::sqrt(0.03));
-  auto cloud = ipiatest::ToPolyData(ipiatest::PointsOn(shape, 12000));
-  // Spots of a tenth of the model, which is 2.6 long.
-  const Field colour = [](const Vector3& x, int c)
-  {
-    const auto k = static_cast<std::size_t>(c);
-    return 127.5 *
-      (1 + std::sin(24 * x[k] + c) * std::cos(17 * x[(k + 1) % 3]) * std::cos(6 * x[(k + 2) % 3]));
-  };
-  vtkNew<vtkMinimalStandardRandomSequence> random;
-  random->SetSeed(3);
-  AddArray(cloud, "RGB", VTK_UNSIGNED_CHAR, 3,
-    [&](const Vector3& x, int c)
-    {
-      // Four uniform deviates make one of a standard deviation of 5 %.
-      double noise = 0;
-      for (int k = 0; k < 4; ++k)
-      {
-        random->Next();
-        noise += random->GetRangeValue(-1, 1);
-      }
-      const double v = colour(x, c) + 0.05 * 255 * noise * std::sqrt(3. / 4);
-      return std::min(std::max(std::round(v), 0.), 255.);
-    });
-  auto reconstruction = Reconstruct(cloud);
-  vtkPolyData* surface = reconstruction->GetOutput();
-  vtkNew<vtkPolyData> bare;
-  bare->SetPoints(surface->GetPoints());
-  vtkNew<vtkPointInterpolator> nearest;
-  nearest->SetInputData(bare);
-  nearest->SetSourceData(cloud);
-  vtkNew<vtkVoronoiKernel> kernel;
-  nearest->SetKernel(kernel);
-  nearest->Update();
-  const auto error = [&](vtkDataArray* array)
-  {
-    double sum = 0;
-    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-    {
-      Vector3 x;
-      surface->GetPoint(i, x.data());
-      for (int c = 0; c < 3; ++c)
-      {
-        const double miss = array->GetComponent(i, c) - colour(x, c);
-        sum += miss * miss;
-      }
-    }
-    return std::sqrt(sum / (3. * static_cast<double>(array->GetNumberOfTuples())));
-  };
-  const double ours = error(surface->GetPointData()->GetArray("RGB"));
-  const double theirs =
-    error(vtkPolyData::SafeDownCast(nearest->GetOutput())->GetPointData()->GetArray("RGB"));
-  std::cout << "root mean square colour error: " << ours << ", of the nearest point: " << theirs
-            << "\n";
-  checks.AtMost(ours, 0.5 * theirs, "error of noisy colours in that of the nearest point");
+  const auto errors =
+    ipiatest::NoisyColours(ipiatest::ToPolyData(ipiatest::PointsOn(shape, 12000)));
+  checks.AtMost(errors.OfSurface, 0.4 * errors.OfNearest, "error in that of the nearest point");
 }
 }
 
