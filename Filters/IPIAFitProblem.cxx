@@ -8,6 +8,8 @@
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFitter.h"
 
+#include "vtkDataArray.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -29,6 +31,10 @@ constexpr double BytesPerCoefficient = 96, BytesPerRow = 160;
 constexpr double BytesPerWeight = 64, BytesPerRationalSample = 16, RationalSlices = 16;
 /// And in bricks: per brick that is stored, and per brick of the whole lattice.
 constexpr double BytesPerBrick = 2048, BytesPerAbsentBrick = 16;
+/// And of point arrays: per point, per point and component, and per brick and component; per sample
+/// and coefficient while a component is sampled.
+constexpr double BytesPerArrayPoint = 320, BytesPerArrayValue = 16, BytesPerBrickOfArray = 1024;
+constexpr double BytesPerArraySample = 8, BytesPerArrayCoefficient = 16;
 /// Bricks around a brick with data, and layers of them on both sides of a surface that crosses the
 /// lattice twice along every axis.
 constexpr double BricksAroundOne = 27, LayersOfBricks = 6;
@@ -367,14 +373,31 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
     1 + (parameters.GenerateGradient ? 4 : 0) + (parameters.GenerateSupport ? 1 : 0);
   const double rows = 3. * static_cast<double>(this->Cloud.Positions.size());
   double needed = rows * BytesPerRow;
+  const double bricks[3] = { this->GridSize[0] / 4. + 1, this->GridSize[1] / 4. + 1,
+    this->GridSize[2] / 4. + 1 };
+  const double allBricks = bricks[0] * bricks[1] * bricks[2];
+  const double sides = bricks[0] * bricks[1] + bricks[1] * bricks[2] + bricks[2] * bricks[0];
+  const double stored = std::min({ allBricks, BricksAroundOne * rows, LayersOfBricks * sides });
+  if (!this->Arrays.empty())
+  {
+    double components = 0, bytes = BytesPerArraySample;
+    for (const PointArray& array : this->Arrays)
+    {
+      components += array.NumberOfComponents();
+      bytes += array.NumberOfComponents() * array.Prototype->GetDataTypeSize();
+    }
+    const auto points = static_cast<double>(this->Cloud.Positions.size());
+    needed += points * (BytesPerArrayPoint + BytesPerArrayValue * components) +
+      allBricks * BytesPerAbsentBrick +
+      stored * (BytesPerBrick + BytesPerBrickOfArray * components);
+    if (!parameters.FunctionOnly)
+    {
+      needed += samples * bytes + coefficients * BytesPerArrayCoefficient;
+    }
+  }
   if (this->staysInBricks(parameters))
   {
-    const double bricks[3] = { this->GridSize[0] / 4. + 1, this->GridSize[1] / 4. + 1,
-      this->GridSize[2] / 4. + 1 };
-    const double all = bricks[0] * bricks[1] * bricks[2];
-    const double sides = bricks[0] * bricks[1] + bricks[1] * bricks[2] + bricks[2] * bricks[0];
-    needed += all * BytesPerAbsentBrick +
-      BytesPerBrick * std::min({ all, BricksAroundOne * rows, LayersOfBricks * sides });
+    needed += allBricks * BytesPerAbsentBrick + stored * BytesPerBrick;
   }
   else
   {
@@ -395,7 +418,8 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
       " GiB of memory (GridSize ", this->GridSize[0], " x ", this->GridSize[1], " x ",
       this->GridSize[2], ", ", this->WholeExtent[1] + 1, " x ", this->WholeExtent[3] + 1, " x ",
       this->WholeExtent[5] + 1, " samples); the machine has ", available / Gibibyte,
-      " GiB. Reduce GridSize or SampleDimensions.");
+      " GiB. Reduce GridSize or SampleDimensions",
+      this->Arrays.empty() ? "." : ", or choose fewer point arrays.");
   }
 }
 

@@ -6,7 +6,7 @@
 #ifndef IPIAFitProblem_h
 #define IPIAFitProblem_h
 
-#include "IPIAPointCloud.h"
+#include "IPIAPointArrays.h"
 
 namespace ipia
 {
@@ -53,8 +53,9 @@ class FitProblem
 {
 public:
   PointCloud Cloud;
-  std::string Refusal;         ///< empty if the problem can be solved
-  vtkIdType OutsideBounds = 0; ///< points and extra rows that were dropped
+  std::vector<PointArray> Arrays; ///< of the cloud, that are fitted beside f
+  std::string Refusal;            ///< empty if the problem can be solved
+  vtkIdType OutsideBounds = 0;    ///< points and extra rows that were dropped
 
   int Dimension = 3;
   ipia::Frame Frame; ///< turned where the points lie in a tilted plane; what follows is in it
@@ -67,7 +68,7 @@ public:
   double SampleSpacing[3] = { 1, 1, 1 };
   int WholeExtent[6] = { 0, -1, 0, -1, 0, -1 };
 
-  /// Derives all from the cloud, which has been gathered.
+  /// Derives all from the cloud and the arrays, which have been gathered.
   void Prepare(const FitParameters& parameters);
 
   /// Whether neither the finest lattice nor an image of f is ever held: the function of a hierarchy

@@ -77,28 +77,6 @@ StoppingRule stoppingRule(const FitParameters& parameters)
 }
 
 template <int Dim>
-Placement<Dim> placementOf(const FitProblem& problem)
-{
-  auto place = Placement<Dim>::withFlatAxis(problem.FlatAxis);
-  place.Turn = problem.Frame;
-  std::copy_n(problem.Origin, 3, place.Origin.begin());
-  return place;
-}
-
-template <int Dim>
-Lattice<Dim> latticeOf(const FitProblem& problem, const Placement<Dim>& place)
-{
-  Lattice<Dim> lattice;
-  for (int a = 0; a < Dim; ++a)
-  {
-    const auto i = static_cast<std::size_t>(a);
-    lattice.Size[i] = problem.GridSize[place.Axis[i]];
-    lattice.Spacing[a] = problem.Spacing[place.Axis[i]];
-  }
-  return lattice;
-}
-
-template <int Dim>
 Points<Dim> normalsOf(const FitProblem& problem, const Placement<Dim>& place)
 {
   const auto& normals = problem.Cloud.Normals;
@@ -344,6 +322,28 @@ std::int64_t offsetRowsInside(
 }
 
 template <int Dim>
+Placement<Dim> placementOf(const FitProblem& problem)
+{
+  auto place = Placement<Dim>::withFlatAxis(problem.FlatAxis);
+  place.Turn = problem.Frame;
+  std::copy_n(problem.Origin, 3, place.Origin.begin());
+  return place;
+}
+
+template <int Dim>
+Lattice<Dim> latticeOf(const FitProblem& problem, const Placement<Dim>& place)
+{
+  Lattice<Dim> lattice;
+  for (int a = 0; a < Dim; ++a)
+  {
+    const auto i = static_cast<std::size_t>(a);
+    lattice.Size[i] = problem.GridSize[place.Axis[i]];
+    lattice.Spacing[a] = problem.Spacing[place.Axis[i]];
+  }
+  return lattice;
+}
+
+template <int Dim>
 FitSolution<Dim> solve(
   const FitProblem& problem, const FitParameters& parameters, const ProgressCallback& progress)
 {
@@ -385,6 +385,10 @@ FitSolution<Dim> solve(
   return solution;
 }
 
+template Placement<2> placementOf<2>(const FitProblem&);
+template Lattice<2> latticeOf<2>(const FitProblem&, const Placement<2>&);
 template FitSolution<2> solve<2>(const FitProblem&, const FitParameters&, const ProgressCallback&);
+template Placement<3> placementOf<3>(const FitProblem&);
+template Lattice<3> latticeOf<3>(const FitProblem&, const Placement<3>&);
 template FitSolution<3> solve<3>(const FitProblem&, const FitParameters&, const ProgressCallback&);
 }

@@ -42,6 +42,12 @@ struct FitSolution
   }
 };
 
+/// Where a problem lies, and the lattice it is solved on.
+template <int Dim>
+Placement<Dim> placementOf(const FitProblem& problem);
+template <int Dim>
+Lattice<Dim> latticeOf(const FitProblem& problem, const Placement<Dim>& place);
+
 template <int Dim>
 FitSolution<Dim> solve(
   const FitProblem& problem, const FitParameters& parameters, const ProgressCallback& progress);

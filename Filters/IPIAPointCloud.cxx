@@ -162,6 +162,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
       }
     }
   }
+  this->Blocks.assign(blocks.begin(), blocks.end());
   if (blocks.size() == 1)
   {
     this->Source = blocks.front();

@@ -54,6 +54,8 @@ public:
 
   /// The input as one data set; Ids are the points of it that were taken.
   vtkSmartPointer<vtkPolyData> Source;
+  /// The parts that it was made of, in the order of its points.
+  std::vector<vtkSmartPointer<vtkPolyData>> Blocks;
   /// The arrays of normals, weights and local fairing weights that were chosen in each block
   /// (nullptr: none), and that of the values of extra rows.
   std::vector<vtkDataArray*> ChosenArrays;

@@ -2,15 +2,17 @@
 #include "vtkIPIAImplicitFitter.h"
 
 #include "Core/Parallel.h"
+#include "IPIAAttributes.h"
 #include "IPIABrickContour.h"
 #include "IPIAFitSolution.h"
+#include "IPIAIdentity.h"
 #include "IPIAProgress.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFunction.h"
 
 #include "vtkCellArray.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
+#include "vtkCommand.h"
+#include "vtkDataArraySelection.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -35,29 +37,10 @@ namespace
 {
 /// Shares of the progress bar: up to the end of the fit; the rest is sampling.
 constexpr double ProgressOfRows = 0.05, ProgressOfFit = 0.8;
+/// And up to the end of f's, where point arrays are fitted too.
+constexpr double ProgressOfFunction = 0.4;
 
 using ipia::text;
-
-/// Everything a result depends on that identifies data: what it was made of and when.
-void appendIdentity(vtkDataObject* data, std::vector<vtkMTimeType>& identity)
-{
-  if (auto* composite = vtkCompositeDataSet::SafeDownCast(data))
-  {
-    auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
-    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
-    {
-      appendIdentity(iterator->GetCurrentDataObject(), identity);
-    }
-  }
-  identity.push_back(reinterpret_cast<std::uintptr_t>(data));
-  identity.push_back(data ? data->GetMTime() : 0);
-}
-
-void appendArrayIdentity(vtkDataArray* array, std::vector<vtkMTimeType>& identity)
-{
-  identity.push_back(reinterpret_cast<std::uintptr_t>(array));
-  identity.push_back(array ? array->GetMTime() : 0);
-}
 }
 
 /// What is kept between updates: the problem and its solution, each with what it depends on.
@@ -65,6 +48,8 @@ class vtkIPIAImplicitFitter::Internals
 {
 public:
   vtkNew<vtkIPIAImplicitFunction> Function;
+  vtkNew<vtkDataArraySelection> PointArrays;
+  ipia::AttributeFields Attributes;
 
   std::unique_ptr<ipia::FitProblem> Current;
   std::vector<vtkMTimeType> ProblemIdentity;
@@ -132,6 +117,7 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
   , GenerateGradient(false)
   , GenerateSupport(false)
   , OutputScalarType(VTK_FLOAT)
+  , FitPointArrays(true)
   , FunctionOnly(false)
   , State(new Internals)
 {
@@ -143,6 +129,9 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
     vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::NORMALS);
   this->SetInputArrayToProcess(ipia::PointCloud::ExtraValuesIndex, 1, 0,
     vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  this->State->PointArrays->SetUnknownArraySetting(1);
+  this->State->PointArrays->AddObserver(
+    vtkCommand::ModifiedEvent, this, &vtkIPIAImplicitFitter::Modified);
   // Makes the index known, without an array.
   this->GetInputArrayInformation(ipia::PointCloud::LocalFairingIndex);
 }
@@ -189,6 +178,11 @@ void vtkIPIAImplicitFitter::SetExtraRowsConnection(vtkAlgorithmOutput* output)
 void vtkIPIAImplicitFitter::SetExtraRowsData(vtkPolyData* rows)
 {
   this->SetInputData(1, rows);
+}
+
+vtkDataArraySelection* vtkIPIAImplicitFitter::GetPointDataArraySelection()
+{
+  return this->State->PointArrays;
 }
 
 vtkIPIAImplicitFunction* vtkIPIAImplicitFitter::GetImplicitFunction()
@@ -253,8 +247,8 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
   vtkDataObject* points = vtkDataObject::GetData(input[0]);
   vtkPolyData* extraRows = vtkPolyData::GetData(input[1]);
   std::vector<vtkMTimeType> identity{ this->GetMTime(), this->FunctionOnly };
-  appendIdentity(points, identity);
-  appendIdentity(extraRows, identity);
+  ipia::appendIdentity(points, identity);
+  ipia::appendIdentity(extraRows, identity);
   if (this->State->Current && identity == this->State->ProblemIdentity)
   {
     return;
@@ -263,6 +257,11 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
   this->State->Current->Cloud.gather([this](int index, vtkDataObject* data)
     { return this->GetInputArrayToProcess(index, data); },
     points, extraRows);
+  if (this->FitPointArrays)
+  {
+    this->State->Current->Arrays =
+      ipia::choosePointArrays(this->State->Current->Cloud, this->State->PointArrays);
+  }
   this->State->Current->Prepare(this->Parameters());
   this->State->ProblemIdentity = identity;
 }
@@ -391,7 +390,8 @@ bool vtkIPIAImplicitFitter::FitInDimension()
   const auto progress = [this, &farthest](double share)
   {
     farthest = std::max(farthest, share);
-    return ipia::reportProgress(this, ProgressOfRows + (ProgressOfFit - ProgressOfRows) * farthest);
+    const double end = this->State->Current->Arrays.empty() ? ProgressOfFit : ProgressOfFunction;
+    return ipia::reportProgress(this, ProgressOfRows + (end - ProgressOfRows) * farthest);
   };
   auto& slot = this->State->Slot<Dim>();
   slot = std::make_unique<ipia::FitSolution<Dim>>(
@@ -437,7 +437,7 @@ bool vtkIPIAImplicitFitter::Fit()
   identity[0] = 0; // the filter's own time covers more than the fit's parameters
   for (vtkDataArray* array : problem.Cloud.ChosenArrays)
   {
-    appendArrayIdentity(array, identity);
+    ipia::appendArrayIdentity(array, identity);
   }
   std::vector<double> parameters{ this->OffsetDistance, this->OffsetValue,
     this->InwardOffsetDistance, this->InwardOffsetValue, this->WeightStepSize,
@@ -504,6 +504,47 @@ bool vtkIPIAImplicitFitter::Fit()
   return true;
 }
 
+bool vtkIPIAImplicitFitter::FitAttributes()
+{
+  Internals& state = *this->State;
+  ipia::Identity identity = state.ProblemIdentity;
+  identity[0] = identity[1] = 0; // parameters, and what is wanted of the fit
+  for (vtkDataArray* array : state.Current->Cloud.ChosenArrays)
+  {
+    ipia::appendArrayIdentity(array, identity);
+  }
+  const auto progress = [this](double share)
+  {
+    return ipia::reportProgress(
+      this, ProgressOfFunction + (ProgressOfFit - ProgressOfFunction) * share);
+  };
+  const bool done = state.Attributes.fit(*state.Current, identity, progress);
+  this->WarnOfAttributes();
+  if (!done)
+  {
+    this->DiscardFit();
+  }
+  return done;
+}
+
+void vtkIPIAImplicitFitter::WarnOfAttributes()
+{
+  const std::string warning = this->State->Attributes.takeWarning();
+  if (!warning.empty())
+  {
+    vtkWarningMacro(<< warning);
+  }
+}
+
+void vtkIPIAImplicitFitter::EvaluateAttributes(vtkPolyData* surface)
+{
+  if (surface->GetNumberOfPoints() > 0)
+  {
+    this->State->Attributes.evaluate(surface->GetPoints(), surface->GetPointData());
+    this->WarnOfAttributes();
+  }
+}
+
 void vtkIPIAImplicitFitter::DiscardFit()
 {
   this->State->Planar.reset();
@@ -531,7 +572,10 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
     }
   }
 
-  const int quantities = 1 + (this->GenerateGradient ? Dim : 0) + (this->GenerateSupport ? 1 : 0);
+  // Where nothing but the function is wanted, point arrays are evaluated where they are needed.
+  const double ofArrays = this->FunctionOnly ? 0 : this->State->Attributes.numberOfComponents();
+  const double quantities =
+    1 + (this->GenerateGradient ? Dim : 0) + (this->GenerateSupport ? 1 : 0) + ofArrays;
   int finished = 0;
   const auto progress = [&](double share)
   {
@@ -585,6 +629,13 @@ bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
       return false;
     }
     image->GetPointData()->AddArray(support);
+  }
+  if (ofArrays > 0)
+  {
+    const bool done =
+      this->State->Attributes.sample<Dim>(positions, image->GetPointData(), progress);
+    this->WarnOfAttributes();
+    return done;
   }
   return true;
 }
@@ -701,7 +752,7 @@ int vtkIPIAImplicitFitter::RequestData(
     this->DiscardFit();
     return 1;
   }
-  if (!this->Fit())
+  if (!this->Fit() || !this->FitAttributes())
   {
     return 1;
   }
@@ -795,6 +846,9 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "GenerateGradient: " << this->GenerateGradient << "\n";
   os << indent << "GenerateSupport: " << this->GenerateSupport << "\n";
   os << indent << "OutputScalarType: " << this->OutputScalarType << "\n";
+  os << indent << "FitPointArrays: " << this->FitPointArrays << "\n";
+  os << indent << "PointDataArraySelection:\n";
+  this->State->PointArrays->PrintSelf(os, indent.GetNextIndent());
   os << indent << "NumberOfIterationsUsed: " << this->NumberOfIterationsUsed << "\n";
   os << indent << "StepSizeUsed: " << this->StepSizeUsed << "\n";
   os << indent << "Energy: " << this->EnergyReached << "\n";

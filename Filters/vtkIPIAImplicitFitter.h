@@ -68,6 +68,26 @@
  * is left and still meets both (an open surface, a wide hole) takes the sign of the larger share
  * and a warning says so. Boxes beside a constant with no other sign around them take it as well.
  *
+ * ### Point arrays
+ * The point arrays of the input (colours, scalars, vectors) become functions in space, on output 0
+ * beside f, so that vtkFlyingEdges3D with InterpolateAttributes carries them to the contour. Per
+ * component
+ *
+ *     v(x) = min(max(a + b x + sum_i D_i B_i(x), low), high),
+ *
+ * a least-squares linear function and a spline of what it leaves, on the levels of the hierarchy
+ * and the domain of f. Each level minimises sum_k w_k (v(p_k) - v_k)^2 + tau sum |D^2 D_i|^2; where
+ * there are no data v is filled smoothly from around. low and high are the least and greatest
+ * value, so that colours stay colours. Noise is smoothed: of all levels and larger tau those are
+ * taken that predict the values of every eighth point, held out, best.
+ *
+ * Arrays keep name, type and components; integral types are rounded. GetPointDataArraySelection
+ * chooses them, by default all numeric ones with a name, but normals, weights and local fairing
+ * weights that the fit uses, global and pedigree ids, and ghosts. In a composite input they belong
+ * together by name; where a block lacks an array, or values are not finite (one warning counts
+ * these), its points say nothing about it. Arrays of a name that a result has itself are left out,
+ * with a warning. Neither their choice nor their values change f.
+ *
  * ### Input
  * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of
  * them, all of whose blocks make one fit. SetInputArrayToProcess: 0, the normals (3 components;
@@ -81,16 +101,16 @@
  * 1. SetInputArrayToProcess 2 (port 1): the values (default: the active point scalars).
  *
  * ### Output
- * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`; the results
- * below as field data. Origin and last point are the ends of the domain. Any sub-extent can be
- * asked for. Port 1: the points that were fitted, with all their arrays, and `Residual` (f) and
- * `Distance` (f / |grad f|). Port 2: the control lattice, a vtkImageData with point array
- * `Coefficient`, with UniformRational also `Weight`, origin lo - h, spacing h and dimensions N, on
- * domain [lo, hi], and the far field
- * as field data: `FarField`, one signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1)
- * (2 (N_z - 3) + 1) boxes (no third factor in 2-D), x fastest, -1 or 1 where f is that sign times
- * `FarFieldMagnitude` (one double), 0 where the spline counts. vtkIPIAImplicitFunction takes it;
- * vtkImageBSplineInterpolator of degree 3 interpolates a spline without weights.
+ * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`, and the point
+ * arrays of the input; the results below as field data. Origin and last point are the ends of the
+ * domain. Any sub-extent can be asked for. Port 1: the points that were fitted, with all their
+ * arrays, and `Residual` (f) and `Distance` (f / |grad f|). Port 2: the control lattice, a
+ * vtkImageData with point array `Coefficient`, with UniformRational also `Weight`, origin lo - h,
+ * spacing h and dimensions N, on domain [lo, hi], and the far field as field data: `FarField`, one
+ * signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1) (2 (N_z - 3) + 1) boxes (no third
+ * factor in 2-D), x fastest, -1 or 1 where f is that sign times `FarFieldMagnitude` (one double), 0
+ * where the spline counts. vtkIPIAImplicitFunction takes it; vtkImageBSplineInterpolator of degree
+ * 3 interpolates a spline without weights.
  *
  * ### Two dimensions
  * If all points lie in a plane and their normals in that plane, f is a bicubic spline in that plane
@@ -134,6 +154,7 @@
 #include <memory>     // for std::unique_ptr
 #include <vector>     // for std::vector
 
+class vtkDataArraySelection;
 class vtkFieldData;
 class vtkIPIAImplicitFunction;
 class vtkPolyData;
@@ -438,6 +459,22 @@ public:
   void SetOutputScalarTypeToDouble() { this->SetOutputScalarType(VTK_DOUBLE); }
   ///@}
 
+  /**
+   * The point arrays of the input that are fitted beside f, by name. Arrays that it does not know
+   * are (its UnknownArraySetting is 1): disable those that are not wanted, or set that to 0 and
+   * enable those that are. Changes modify this filter and do not fit f again.
+   */
+  vtkDataArraySelection* GetPointDataArraySelection();
+
+  ///@{
+  /**
+   * Whether point arrays are fitted at all. Default on.
+   */
+  vtkSetMacro(FitPointArrays, bool);
+  vtkGetMacro(FitPointArrays, bool);
+  vtkBooleanMacro(FitPointArrays, bool);
+  ///@}
+
   ///@{
   /**
    * Results of the last fit, also in the field data of output 0, there under their names without
@@ -526,6 +563,7 @@ protected:
   bool GenerateGradient;
   bool GenerateSupport;
   int OutputScalarType;
+  bool FitPointArrays;
 
   int NumberOfIterationsUsed;
   double StepSizeUsed;
@@ -555,6 +593,7 @@ private:
   bool ContourBricks(int pointType, const std::function<bool(double)>& progress,
     vtkPolyData* surface, std::vector<vtkIdType>& component) const;
   const ipia::PointCloud& FittedCloud() const;
+  void EvaluateAttributes(vtkPolyData* surface);
 
   ipia::FitParameters Parameters() const;
 
@@ -562,6 +601,8 @@ private:
   bool Fit();
   template <int Dim>
   bool FitInDimension();
+  bool FitAttributes();
+  void WarnOfAttributes();
   void DiscardFit();
   void ResetResults();
   template <int Dim, typename ArrayType>

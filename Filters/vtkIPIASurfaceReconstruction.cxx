@@ -3,6 +3,7 @@
 
 #include "IPIABrickContour.h"
 #include "IPIAComponents.h"
+#include "IPIAIdentity.h"
 #include "IPIAPointCloud.h"
 #include "IPIAProgress.h"
 #include "vtkIPIAImplicitFitter.h"
@@ -132,6 +133,11 @@ void vtkIPIASurfaceReconstruction::SetExtraRowsData(vtkPolyData* rows)
   this->SetInputData(1, rows);
 }
 
+vtkDataArraySelection* vtkIPIASurfaceReconstruction::GetPointDataArraySelection()
+{
+  return this->Fitter->GetPointDataArraySelection();
+}
+
 vtkMTimeType vtkIPIASurfaceReconstruction::GetMTime()
 {
   return std::max(this->Superclass::GetMTime(), this->Fitter->GetMTime());
@@ -169,7 +175,12 @@ int vtkIPIASurfaceReconstruction::RequestData(
   vtkPolyData* surface = vtkPolyData::GetData(output);
   surface->Initialize();
   this->NumberOfComponentsLeftOut = 0;
+  ipia::Identity identity;
   for (int port = 0; port < 2; ++port)
+  {
+    ipia::appendIdentity(vtkDataObject::GetData(input[port]), identity);
+  }
+  for (int port = 0; port < 2 && identity != this->InputIdentity; ++port)
   {
     // A copy of its own keeps the fitter out of this filter's pipeline.
     vtkSmartPointer<vtkDataObject> copy;
@@ -180,6 +191,7 @@ int vtkIPIASurfaceReconstruction::RequestData(
     }
     this->Fitter->SetInputDataObject(port, copy);
   }
+  this->InputIdentity = std::move(identity);
   for (int index = 0; index < 4; ++index)
   {
     this->Fitter->SetInputArrayToProcess(index, this->GetInputArrayInformation(index));
@@ -212,7 +224,15 @@ int vtkIPIASurfaceReconstruction::RequestData(
     this->NumberOfComponentsLeftOut = ipia::leaveOutComponents(
       surface, component, this->Fitter->FittedCloud().Positions, ReachOfData * this->KnotSpacing());
   }
-  // Neither the input nor the samples are needed any more; the function and the figures stay.
+  if (done)
+  {
+    this->Fitter->EvaluateAttributes(surface);
+  }
+  else
+  {
+    this->InputIdentity.clear(); // so that the same input is refused as loudly again
+  }
+  // The samples are not needed any more; the function and the figures stay.
   for (int port = 0; port < this->Fitter->GetNumberOfOutputPorts(); ++port)
   {
     this->Fitter->GetOutputDataObject(port)->Initialize();

@@ -21,6 +21,8 @@
  * - a Newton step x <- x - f grad f / |grad f|^2 of every vertex, at most a third of a sample
  *   spacing, which removes most of the error of linear contouring;
  * - point normals from the exact gradient of f, towards f > 0;
+ * - the point arrays of the input (colours, scalars, vectors) at its vertices, as smooth functions
+ *   v(x) fitted as vtkIPIAImplicitFitter tells, with the active attributes that they were;
  * - the component filter: components that hardly any data point is nearest to are left out;
  * - points in double precision where single would show, such as in map coordinates.
  *
@@ -37,6 +39,9 @@
 #include "vtkNew.h"               // for vtkNew
 #include "vtkPolyDataAlgorithm.h"
 
+#include <vector> // for std::vector
+
+class vtkDataArraySelection;
 class vtkIPIAImplicitFitter;
 class vtkImageData;
 
@@ -60,6 +65,11 @@ public:
   void SetExtraRowsConnection(vtkAlgorithmOutput* output);
   void SetExtraRowsData(vtkPolyData* rows);
   ///@}
+
+  /**
+   * The fitter's choice of the point arrays that the surface has, see vtkIPIAImplicitFitter.
+   */
+  vtkDataArraySelection* GetPointDataArraySelection();
 
   ///@{
   /**
@@ -112,6 +122,7 @@ private:
   void MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled);
 
   vtkNew<vtkIPIAImplicitFitter> Fitter;
+  std::vector<vtkMTimeType> InputIdentity; // of what the fitter has copies of
 };
 
 #endif

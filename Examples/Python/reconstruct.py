@@ -5,7 +5,8 @@
     python3 reconstruct.py scan.ply --output ipia-output
 
 reads, reconstructs, measures and draws, and writes surface.vtp, surface.ply (single precision, no
-normals), f.vti and picture.png there. Where there is no display, which the picture needs, the script runs
+normals), f.vti and picture.png there. Point arrays of the file, such as colours, are on the surface, the
+colours also in surface.ply. Where there is no display, which the picture needs, the script runs
 itself under xvfb-run, if that is installed.
 """
 import argparse
@@ -134,11 +135,20 @@ def looks_like_colours(columns):
     )
 
 
+def coloured(data, columns):
+    """The data with red, green and blue from 0 to 255, as vtkPLYReader would have them."""
+    array = numpy_to_vtk(np.ascontiguousarray(columns, dtype=np.uint8), deep=True)
+    array.SetName("RGB")
+    data.GetPointData().SetScalars(array)
+    return data
+
+
 def read_text(path):
     """Points, and normals where columns 4 to 6 are normals, of a file of one point a line.
 
     The first line may be the number of points. Then .pwn files may hold the points and after them
-    the normals, each with three columns. Further columns (intensity, colour) are not used.
+    the normals, each with three columns. Red, green and blue (0 to 255) may follow the points, an
+    intensity after these, or the normals; further columns are not used.
     """
     with open(path, encoding="utf-8") as file:
         lines = file.read().replace(",", " ").splitlines()
@@ -162,10 +172,16 @@ def read_text(path):
         return polydata(table[:count], table[count:])
     if count is not None and count != len(table):
         raise UserError(f"its first line announces {count} points, but {len(table)} lines follow")
-    intensity_and_colours = width == 7 and looks_like_colours(table[:, 4:])
-    if width < 6 or intensity_and_colours or looks_like_colours(table[:, 3:6]):
+    if width == 7 and looks_like_colours(table[:, 4:]):
+        return coloured(polydata(table[:, :3]), table[:, 4:])
+    if width >= 6 and looks_like_colours(table[:, 3:6]):
+        return coloured(polydata(table[:, :3]), table[:, 3:6])
+    if width < 6:
         return polydata(table[:, :3])
-    return polydata(table[:, :3], table[:, 3:6])
+    data = polydata(table[:, :3], table[:, 3:6])
+    if width >= 9 and looks_like_colours(table[:, 6:9]):
+        return coloured(data, table[:, 6:9])
+    return data
 
 
 def read(path):
@@ -229,6 +245,28 @@ def share_pointing_outward(points, normals):
     directions = np.array([(x, y, z) for x in steps for y in steps for z in steps if x or y or z])
     outermost = np.argmax(points @ directions.T, axis=0)
     return np.mean(np.sum(normals[outermost] * directions, axis=1) > 0)
+
+
+def colours(data):
+    """The name of the red, green and blue values that VTK's readers give points, or None."""
+    for name in ("RGB", "RGBA"):
+        array = data.GetPointData().GetArray(name)
+        if array and array.GetDataTypeAsString() == "unsigned char":
+            return name
+    return None
+
+
+def with_normals_and_arrays(data):
+    """The points with normals and all the other point arrays, and how the normals came about."""
+    points, how = with_normals(data)
+    arrays = data.GetPointData()
+    for i in range(arrays.GetNumberOfArrays()):
+        array = arrays.GetAbstractArray(i)
+        if array.GetName() and array.GetName().lower() != "normals":
+            points.GetPointData().AddArray(array)
+    if colours(points):
+        points.GetPointData().SetActiveScalars(colours(points))
+    return points, how
 
 
 def with_normals(data):
@@ -380,7 +418,7 @@ def draw(data, surface, path):
     for i, (part, colour, text) in enumerate(views):
         mapper = vtkPolyDataMapper()
         mapper.SetInputData(part)
-        mapper.ScalarVisibilityOff()
+        mapper.SetScalarVisibility(colours(part) is not None)
         actor = vtkActor()
         actor.SetMapper(mapper)
         look = actor.GetProperty()
@@ -457,7 +495,7 @@ def reconstruct(path, folder, picture):
         if data.GetNumberOfPoints() == 0:
             raise UserError("it has no points")
     with Stage("normals"):
-        data, how = with_normals(data)
+        data, how = with_normals_and_arrays(data)
     print(f"  {data.GetNumberOfPoints():,} points; normals {how}")
 
     reconstruction = vtkIPIASurfaceReconstruction()
@@ -492,7 +530,11 @@ def reconstruct(path, folder, picture):
     }
     with Stage("write"):
         write(vtkXMLPolyDataWriter(), surface, files["surface"])
-        write(vtkPLYWriter(), surface, files["also"])
+        writer = vtkPLYWriter()
+        if colours(surface):
+            writer.SetArrayName(colours(surface))
+            writer.SetEnableAlpha(colours(surface) == "RGBA")
+        write(writer, surface, files["also"])
         write(vtkXMLImageDataWriter(), function.GetOutput(), files["function"])
     if picture:
         files["picture"] = os.path.join(folder, "picture.png")

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HierarchyLevel.h"
 
-#include "BrickOperator.h"
 #include "Parallel.h"
 
 #include <chrono>
@@ -28,6 +27,7 @@ constexpr std::size_t LeastRowsForThreads = 1 << 16;
 constexpr double LeastScale = 0.1;
 /// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
 constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
+}
 
 template <int Dim>
 HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
@@ -89,6 +89,37 @@ HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bric
   return rows;
 }
 
+template <int Dim>
+double typicalDensity(const BrickLattice<Dim>& bricks, const HermiteRows<Dim>& rows, int threads)
+{
+  const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
+  BrickValues sums, density;
+  collocation.density(sums);
+  collocation.evaluate(sums, density);
+  const auto n = static_cast<std::int64_t>(rows.Rows.size());
+  const auto sumOver = [&](const auto& term)
+  {
+    return parallelSum(n, threads,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        double sum = 0;
+        for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+        {
+          const HermiteRow<Dim>& row = rows.Rows[k];
+          const double relative = density[static_cast<std::size_t>(row.Source)] / UnitDensity;
+          sum += row.Weight > 0 && relative > 0 ? term(row, relative) : 0.0;
+        }
+        return sum;
+      });
+  };
+  const double total = sumOver([](const HermiteRow<Dim>& row, double) { return row.Weight; });
+  const double logarithms = sumOver(
+    [](const HermiteRow<Dim>& row, double relative) { return row.Weight * std::log(relative); });
+  return total > 0 ? std::exp(logarithms / total) : 1.0;
+}
+
+namespace
+{
 /// The value that size / 2 others precede, of values >= 0.
 float median(const BulkVector<float>& values, int threads)
 {
@@ -141,29 +172,8 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
   bool predicted, const HierarchicalOptions& options, int threads)
 {
   const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
-  BrickValues sums, density;
-  collocation.density(sums);
-  collocation.evaluate(sums, density);
   const auto n = static_cast<std::int64_t>(rows.Rows.size());
-  const auto sumOver = [&](const auto& term)
-  {
-    return parallelSum(n, threads,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        double sum = 0;
-        for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
-        {
-          const HermiteRow<Dim>& row = rows.Rows[k];
-          const double relative = density[static_cast<std::size_t>(row.Source)] / UnitDensity;
-          sum += row.Weight > 0 && relative > 0 ? term(row, relative) : 0.0;
-        }
-        return sum;
-      });
-  };
-  const double total = sumOver([](const HermiteRow<Dim>& row, double) { return row.Weight; });
-  const double logarithms = sumOver(
-    [](const HermiteRow<Dim>& row, double relative) { return row.Weight * std::log(relative); });
-  const double typical = total > 0 ? std::exp(logarithms / total) : 1.0;
+  const double typical = typicalDensity(bricks, rows, threads);
 
   // f and its gradient, in knot spacings, by the coarser level.
   constexpr std::size_t stride = 1 + Dim;
@@ -231,8 +241,8 @@ void activateBand(const Level<Dim>& level, BrickLattice<Dim>& bricks)
     }
   }
 }
+}
 
-/// Conjugate gradients with the diagonal as preconditioner, on the active coefficients.
 template <int Dim>
 void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
   double tolerance, StoppingRule rule, int threads, const ProgressCallback& progress,
@@ -323,7 +333,6 @@ void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, in
       });
     ++report.NumberOfIterations;
   }
-}
 }
 
 template <int Dim>
@@ -530,6 +539,11 @@ template std::vector<Level<2>> makeLevels<2>(
   const Lattice<2>&, Samples<2>, const HierarchicalOptions&, int);
 template Samples<2> coarserData<2>(const Samples<2>&, int, int);
 template std::vector<BrickLattice<2>> makeBricks<2>(const std::vector<Level<2>>&, int);
+template HermiteRows<2> makeRows<2>(
+  const Level<2>&, const BrickLattice<2>&, const Sample<2>*, std::int64_t, double, int);
+template double typicalDensity<2>(const BrickLattice<2>&, const HermiteRows<2>&, int);
+template void solveSystem<2>(const BrickOperator<2>&, BrickLattice<2>&, int, double, StoppingRule,
+  int, const ProgressCallback&, LevelReport&);
 template double trustInSlope<2>(const HermiteRow<2>&, const float*);
 template double occupiedCells<2>(const Level<2>&, int);
 template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&,
@@ -540,6 +554,11 @@ template std::vector<Level<3>> makeLevels<3>(
   const Lattice<3>&, Samples<3>, const HierarchicalOptions&, int);
 template Samples<3> coarserData<3>(const Samples<3>&, int, int);
 template std::vector<BrickLattice<3>> makeBricks<3>(const std::vector<Level<3>>&, int);
+template HermiteRows<3> makeRows<3>(
+  const Level<3>&, const BrickLattice<3>&, const Sample<3>*, std::int64_t, double, int);
+template double typicalDensity<3>(const BrickLattice<3>&, const HermiteRows<3>&, int);
+template void solveSystem<3>(const BrickOperator<3>&, BrickLattice<3>&, int, double, StoppingRule,
+  int, const ProgressCallback&, LevelReport&);
 template double trustInSlope<3>(const HermiteRow<3>&, const float*);
 template double occupiedCells<3>(const Level<3>&, int);
 template LevelReport solveLevel<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&,

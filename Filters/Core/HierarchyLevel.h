@@ -7,6 +7,7 @@
 #define ipia_HierarchyLevel_h
 
 #include "BrickLattice.h"
+#include "BrickOperator.h"
 #include "HermiteRows.h"
 #include "LeastSquaresSolver.h"
 #include "PointSamples.h"
@@ -145,6 +146,27 @@ std::int64_t longestAxis(const Lattice<Dim>& lattice)
  */
 template <int Dim>
 double trustInSlope(const HermiteRow<Dim>& row, const float* predictedGradient);
+
+/**
+ * The rows of samples on a level, sorted by brick.
+ *
+ * @param samples   sorted; @a count of them
+ * @param gradient  g, see HierarchicalOptions
+ */
+template <int Dim>
+HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Sample<Dim>* samples, std::int64_t count, double gradient, int threads);
+
+/// By what the weights are divided so that the rows of an occupied cell weigh about 1 in all.
+template <int Dim>
+double typicalDensity(const BrickLattice<Dim>& bricks, const HermiteRows<Dim>& rows, int threads);
+
+/// Conjugate gradients with the diagonal as preconditioner, on the active coefficients; adds what
+/// they did to @a report.
+template <int Dim>
+void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
+  double tolerance, StoppingRule rule, int threads, const ProgressCallback& progress,
+  LevelReport& report);
 
 /// Number of knot cells with data.
 template <int Dim>

@@ -64,7 +64,8 @@ Sample<Dim> meanOf(const Sample<Dim>* begin, const Sample<Dim>* end)
 }
 
 template <int Dim>
-Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input, int threads)
+Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input, int threads,
+  std::vector<std::int64_t>* source)
 {
   const std::int64_t n = input.Positions.cols(), m = input.ExtraPositions.cols();
   BulkVector<KeyedRow> order(static_cast<std::size_t>(n + m));
@@ -137,6 +138,12 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
         fill(static_cast<std::size_t>(k));
       }
     });
+  if (source)
+  {
+    source->resize(order.size());
+    std::transform(
+      order.begin(), order.end(), source->begin(), [](const auto& entry) { return entry.second; });
+  }
   return samples;
 }
 
@@ -191,8 +198,10 @@ Samples<Dim> cluster(const Samples<Dim>& samples, int halvings, int threads)
   return clusters;
 }
 
-template Samples<2> sortedSamples<2>(const Lattice<2>&, const HermiteInput<2>&, int);
-template Samples<3> sortedSamples<3>(const Lattice<3>&, const HermiteInput<3>&, int);
+template Samples<2> sortedSamples<2>(
+  const Lattice<2>&, const HermiteInput<2>&, int, std::vector<std::int64_t>*);
+template Samples<3> sortedSamples<3>(
+  const Lattice<3>&, const HermiteInput<3>&, int, std::vector<std::int64_t>*);
 template Samples<2> cluster<2>(const Samples<2>&, int, int);
 template Samples<3> cluster<3>(const Samples<3>&, int, int);
 }

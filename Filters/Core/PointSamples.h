@@ -48,9 +48,11 @@ using Samples = BulkVector<Sample<Dim>>;
 constexpr int SubCellBits = 3;
 
 /// All rows in the Morton order of their sub-cells, which nests those of all coarser lattices.
+///
+/// @param source  on request the row that each sample was: points first, then extra rows
 template <int Dim>
-Samples<Dim> sortedSamples(
-  const Lattice<Dim>& lattice, const HermiteInput<Dim>& input, int threads);
+Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input, int threads,
+  std::vector<std::int64_t>* source = nullptr);
 
 /// Means of the samples that share a sub-cell @a halvings coarser than those of the finest lattice.
 template <int Dim>

@@ -1,6 +1,6 @@
 # The mathematics, free of VTK: part of the module, and a library of its own for the core's tests.
 foreach (name IN ITEMS
-    AutomaticFairing AutomaticLattice BSplineBasis BrickLattice BrickOperator BrickSpline
+    AttributeFit AttributeSpline AutomaticFairing AutomaticLattice BSplineBasis BrickLattice BrickOperator BrickSpline
     CollocationOperator ConstraintRows FairingIteration FairingSystem FarField HierarchicalFit HierarchyLevel
     ImplicitFit ImplicitSpline KnotRefinement LeastSquaresSolver Oscillation Parametrization PointSamples
     RationalOperator RationalSolver RowBatches TensorSpline TouchedCoefficients)

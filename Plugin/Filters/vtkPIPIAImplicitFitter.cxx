@@ -3,6 +3,7 @@
 
 #include "IPIAGather.h"
 
+#include "vtkDataArraySelection.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -52,6 +53,8 @@ vtkPIPIAImplicitFitter::vtkPIPIAImplicitFitter()
   , Copies(new ipia::SteadyCopy[2])
   , RanksWithPoints(0)
 {
+  // The panel names the arrays that are wanted.
+  this->GetPointDataArraySelection()->SetUnknownArraySetting(0);
 }
 
 vtkPIPIAImplicitFitter::~vtkPIPIAImplicitFitter() = default;

@@ -4,6 +4,7 @@
 #include "IPIAGather.h"
 #include "vtkIPIAImplicitFitter.h"
 
+#include "vtkDataArraySelection.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -17,6 +18,8 @@ vtkPIPIASurfaceReconstruction::vtkPIPIASurfaceReconstruction()
   : Box(this->GetFitter())
   , Arrays(this)
 {
+  // The panel names the arrays that are wanted.
+  this->GetPointDataArraySelection()->SetUnknownArraySetting(0);
 }
 
 vtkPIPIASurfaceReconstruction::~vtkPIPIASurfaceReconstruction() = default;

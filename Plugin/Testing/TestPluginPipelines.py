@@ -33,6 +33,25 @@ def test_blocks_are_fitted_as_one():
     assert not messages.errors and not messages.warnings, (messages.errors, messages.warnings)
 
 
+def test_point_arrays_are_chosen():
+    points, normals = t.sphere(1500)
+    source = t.producer(t.polydata(points, normals, height=points[:, 2], one=np.ones(len(points))))
+
+    def arrays(proxy):
+        data = result(proxy).GetPointData()
+        return {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())}
+
+    for make, own in ((simple.IPIASurfaceReconstruction, {"Normals"}), (simple.IPIAImplicitFitter, {"f"})):
+        proxy = make(Input=source)
+        assert arrays(proxy) == own | {"height", "one"}, arrays(proxy)
+        low, high = result(proxy).GetPointData().GetArray("height").GetRange()
+        assert points[:, 2].min() <= low < -0.9 * t.RADIUS and 0.9 * t.RADIUS < high <= points[:, 2].max()
+        proxy.PointArrays = ["one"]
+        assert arrays(proxy) == own | {"one"}, arrays(proxy)
+        proxy.PointArrays = []
+        assert arrays(proxy) == own, arrays(proxy)
+
+
 def series():
     """Two time steps: a sphere about the origin, another about (5, 0, 0)."""
     names = []

@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkIOGeometry import vtkOBJWriter
 from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOPLY import vtkPLYReader, vtkPLYWriter
@@ -94,6 +94,39 @@ class TestReconstruct(unittest.TestCase):
             np.testing.assert_allclose(normals, self.normals, atol=1e-6)
         else:
             self.assertIsNone(data.GetPointData().GetNormals())
+
+    def test_colours_of_text_files_are_read(self):
+        rgb = np.tile([[10, 20, 250]], (len(self.points), 1))
+        intensity = np.ones((len(self.points), 1))
+        for columns in ((rgb,), (intensity, rgb), (self.normals, rgb), (self.normals, rgb, intensity)):
+            data = self.script.read(self.file("points.xyz", np.hstack((self.points, *columns))))
+            self.assertEqual(data.GetPointData().GetArray("RGB").GetTuple(7), (10, 20, 250))
+            self.assertEqual(data.GetPointData().GetNormals() is None, columns[0] is not self.normals)
+        data = self.script.read(self.file("plain.xyz", np.hstack((self.points, self.normals))))
+        self.assertIsNone(data.GetPointData().GetArray("RGB"))
+
+    def test_colours_of_a_ply_file_are_in_the_results(self):
+        data = self.script.polydata(self.points, self.normals)
+        red = np.where(self.points[:, :1] > 0, 250, 20)
+        rgb = np.hstack((red, np.full_like(red, 60), 255 - red)).astype(np.uint8)
+        array = numpy_to_vtk(rgb, deep=True)
+        array.SetName("RGB")
+        data.GetPointData().SetScalars(array)
+        writer = vtkPLYWriter()
+        writer.SetFileName(self.path("coloured.ply"))
+        writer.SetInputData(data)
+        writer.SetArrayName("RGB")
+        writer.Write()
+        done = self.run_script(self.path("coloured.ply"), "--no-picture")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        reader = vtkPLYReader()
+        reader.SetFileName(self.path("out/surface.ply"))
+        reader.Update()
+        for surface in (self.surface(), reader.GetOutput()):
+            x = vtk_to_numpy(surface.GetPoints().GetData())[:, 0]
+            found = vtk_to_numpy(surface.GetPointData().GetArray("RGB")).astype(int)
+            self.assertTrue(np.all(found[x > 0.3 * RADIUS] >= [200, 59, 0]))
+            self.assertTrue(np.all(found[x < -0.3 * RADIUS] <= [70, 61, 255]))
 
     def test_all_results_are_written(self):
         path = self.file("sphere.xyz", np.hstack((self.points, self.normals)))
