@@ -752,6 +752,11 @@ const std::vector<std::array<double, 3>>& vtkIPIAImplicitFitter::FittedPositions
   return this->State->Current->Cloud.Positions;
 }
 
+const ipia::PointCloud& vtkIPIAImplicitFitter::FittedCloud() const
+{
+  return this->State->Current->Cloud;
+}
+
 void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -133,6 +133,7 @@ class vtkPolyData;
 
 namespace ipia
 {
+class PointCloud;
 struct FitParameters;
 }
 
@@ -547,6 +548,7 @@ private:
   bool ContourBricks(int pointType, const std::function<bool(double)>& progress,
     vtkPolyData* surface, std::vector<vtkIdType>& component) const;
   const std::vector<std::array<double, 3>>& FittedPositions() const;
+  const ipia::PointCloud& FittedCloud() const;
 
   ipia::FitParameters Parameters() const;
 

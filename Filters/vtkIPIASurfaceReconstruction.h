@@ -37,6 +37,8 @@
 #include "vtkNew.h"               // for vtkNew
 #include "vtkPolyDataAlgorithm.h"
 
+#include <vector> // for std::vector
+
 class vtkIPIAImplicitFitter;
 class vtkImageData;
 
@@ -74,6 +76,33 @@ public:
 
   ///@{
   /**
+   * Cut the surface where the data end; see "Open surfaces" above. Default on.
+   */
+  vtkSetMacro(TrimUnsupported, bool);
+  vtkGetMacro(TrimUnsupported, bool);
+  vtkBooleanMacro(TrimUnsupported, bool);
+  ///@}
+
+  ///@{
+  /**
+   * How far the surface may be from the data before it counts as unsupported, in spacings of the
+   * data there: it also bridges gaps and bays at the border up to twice as wide. >= 1, default 3.
+   */
+  vtkSetClampMacro(TrimDistance, double, 1.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TrimDistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Unsupported parts inside the domain up to this size are holes and stay filled: their area (in
+   * 2-D their length) over that of the supported surface. >= 0, default 0.3.
+   */
+  vtkSetClampMacro(HoleSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(HoleSize, double);
+  ///@}
+
+  ///@{
+  /**
    * vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or DEFAULT_PRECISION (the default): double
    * where rounding to float would exceed a thousandth of the knot spacing.
    */
@@ -85,6 +114,11 @@ public:
    * Number of components that the component filter left out in the last update.
    */
   vtkGetMacro(NumberOfComponentsLeftOut, int);
+
+  /**
+   * Number of unsupported parts that were cut off in the last update.
+   */
+  vtkGetMacro(NumberOfPartsTrimmed, int);
 
   /// Covers the fitter's parameters.
   vtkMTimeType GetMTime() override;
@@ -98,8 +132,12 @@ protected:
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
 
   bool ComponentFilter;
+  bool TrimUnsupported;
+  double TrimDistance;
+  double HoleSize;
   int OutputPointsPrecision;
   int NumberOfComponentsLeftOut;
+  int NumberOfPartsTrimmed;
 
 private:
   vtkIPIASurfaceReconstruction(const vtkIPIASurfaceReconstruction&) = delete;
@@ -110,6 +148,8 @@ private:
   int PointType() const;
   void ContourImage(vtkPolyData* surface);
   void MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled);
+  void LeaveOutComponents(vtkPolyData* surface, const std::vector<vtkIdType>& component);
+  void Trim(vtkPolyData* surface);
 
   vtkNew<vtkIPIAImplicitFitter> Fitter;
 };
