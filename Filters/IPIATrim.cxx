@@ -31,6 +31,8 @@ using Position = DataSupport::Position;
 constexpr double OnSide = 0.5;
 /// A cut that would pass an edge's end by less than this share of the edge goes through the end.
 constexpr double Snap = 0.1;
+/// Of an unsupported part, this share of the vertices or more is in cells far from all data.
+constexpr double FarShare = 0.25;
 /// Knot cells are taken together until there are no more than this: a bound on memory.
 constexpr std::int64_t MostCells = std::int64_t{ 1 } << 27;
 
@@ -125,10 +127,59 @@ public:
     }
   }
 
-  bool isNear(const Position& x) const
+  /// The flat index of the cell of a position.
+  std::size_t indexOf(const Position& x) const
   {
     const std::array<std::int64_t, 3> cell = this->cellOf(x);
-    return this->Near[this->flat(cell[0], cell[1], cell[2])];
+    return this->flat(cell[0], cell[1], cell[2]);
+  }
+
+  bool isNear(std::size_t index) const { return this->Near[index]; }
+
+  /// How many of the given cells, which may be repeated, touch each other at most.
+  double largestCluster(std::vector<std::size_t> cells) const
+  {
+    std::sort(cells.begin(), cells.end());
+    std::vector<std::size_t> distinct;
+    std::vector<double> times;
+    for (const std::size_t cell : cells)
+    {
+      if (distinct.empty() || distinct.back() != cell)
+      {
+        distinct.push_back(cell);
+        times.push_back(0);
+      }
+      ++times.back();
+    }
+    // Rows of cells, and what is beside them; a cell at the end of a row may be joined with one at
+    // the beginning of the next, which makes clusters no smaller than they are.
+    DisjointSets sets(static_cast<vtkIdType>(distinct.size()));
+    const auto row = static_cast<std::size_t>(this->Count[0]);
+    const std::size_t slice = row * static_cast<std::size_t>(this->Count[1]);
+    for (const std::size_t step : { std::size_t{ 0 }, row, slice - row, slice, slice + row })
+    {
+      // Both move upwards together.
+      std::size_t other = 0;
+      for (std::size_t k = 0; k < distinct.size(); ++k)
+      {
+        const std::size_t middle = distinct[k] + step;
+        while (other < distinct.size() && distinct[other] + 1 < middle)
+        {
+          ++other;
+        }
+        for (std::size_t i = other; i < distinct.size() && distinct[i] <= middle + 1; ++i)
+        {
+          sets.unite(static_cast<vtkIdType>(k), static_cast<vtkIdType>(i));
+        }
+      }
+    }
+    const std::vector<vtkIdType> label = sets.labels();
+    std::vector<double> size(distinct.size(), 0);
+    for (std::size_t k = 0; k < label.size(); ++k)
+    {
+      size[static_cast<std::size_t>(label[k])] += times[k];
+    }
+    return size.empty() ? 0 : *std::max_element(size.begin(), size.end());
   }
 
 private:
@@ -229,19 +280,35 @@ public:
   }
 
   /// Where the search for unsupported parts begins: far from all occupied cells, and on the sides
-  /// of the domain.
-  std::vector<std::size_t> seeds(const PointCloud& data)
+  /// of the domain. None if no part can be large and none can reach a side.
+  std::vector<std::size_t> seeds(const PointCloud& data) const
   {
     const OccupiedCells occupied(this->Options, data.Positions);
     const auto n = static_cast<std::size_t>(this->Surface->GetNumberOfPoints());
-    std::vector<std::size_t> found;
+    std::vector<std::size_t> found, farCells;
     for (std::size_t i = 0; i < n; ++i)
     {
       const Position x = this->at(i);
-      if (!occupied.isNear(x) || isOnSide(x, this->Options))
+      const std::size_t cell = occupied.indexOf(x);
+      const bool isFar = !occupied.isNear(cell);
+      if (isFar || isOnSide(x, this->Options))
       {
         found.push_back(i);
       }
+      if (isFar)
+      {
+        farCells.push_back(cell);
+      }
+    }
+    const auto all = static_cast<double>(n), far = static_cast<double>(farCells.size());
+    const bool noneOnSide = found.size() == farCells.size() &&
+      std::none_of(found.begin(), found.end(),
+        [this](std::size_t i) { return isOnSide(this->at(i), this->Options); });
+    if (noneOnSide &&
+      occupied.largestCluster(std::move(farCells)) <=
+        this->Options.HoleSize * (FarShare * all - far))
+    {
+      found.clear();
     }
     return found;
   }
