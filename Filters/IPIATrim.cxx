@@ -33,6 +33,9 @@ constexpr double OnSide = 0.5;
 constexpr double Snap = 0.1;
 /// Of an unsupported part, this share of the vertices or more is in cells far from all data.
 constexpr double FarShare = 0.25;
+/// Occupied cells hold at least this many points on average, so that few cells among them are
+/// empty.
+constexpr double PointsPerCell = 1.5;
 /// Knot cells are taken together until there are no more than this: a bound on memory.
 constexpr std::int64_t MostCells = std::int64_t{ 1 } << 27;
 
@@ -80,38 +83,30 @@ void forSimplices(vtkPolyData* surface, const Action& action)
     });
 }
 
-/// Which knot cells have data in them or in a cell beside them.
+/// Which cells have data in them or in a cell beside them: knot cells, or more of them together
+/// where data are sparse.
 class OccupiedCells
 {
 public:
   OccupiedCells(const TrimOptions& options, const std::vector<Position>& data)
   {
-    std::int64_t total = MostCells + 1;
-    for (std::int64_t together = 1; total > MostCells; together *= 2)
+    const auto enough = static_cast<double>(data.size()) / PointsPerCell;
+    std::int64_t together = 1, total = this->choose(options, together);
+    std::vector<std::array<std::int64_t, 3>> occupied;
+    for (;; total = this->choose(options, together *= 2))
     {
-      total = 1;
-      for (std::size_t a = 0; a < 3; ++a)
+      if (total <= MostCells)
       {
-        const std::int64_t cells = options.Cells[a];
-        this->Count[a] = std::max<std::int64_t>(1, (cells + together - 1) / together);
-        this->Lower[a] = options.Domain[2 * a];
-        this->PerLength[a] = cells > 0 ? static_cast<double>(cells) /
-            (options.Domain[2 * a + 1] - options.Domain[2 * a]) / static_cast<double>(together)
-                                       : 0;
-        total *= this->Count[a];
+        occupied = this->cellsOf(data, total);
+        if (static_cast<double>(occupied.size()) <= enough || total == 1)
+        {
+          break;
+        }
       }
     }
-    std::vector<bool> own(static_cast<std::size_t>(total));
-    this->Near = own;
-    for (const Position& x : data)
+    this->Near.assign(static_cast<std::size_t>(total), false);
+    for (const std::array<std::int64_t, 3>& cell : occupied)
     {
-      const std::array<std::int64_t, 3> cell = this->cellOf(x);
-      const std::size_t index = this->flat(cell[0], cell[1], cell[2]);
-      if (own[index])
-      {
-        continue;
-      }
-      own[index] = true;
       const auto first = [&](std::size_t a) { return std::max<std::int64_t>(cell[a] - 1, 0); };
       const auto last = [&](std::size_t a) { return std::min(cell[a] + 1, this->Count[a] - 1); };
       for (std::int64_t k = first(2); k <= last(2); ++k)
@@ -183,6 +178,42 @@ public:
   }
 
 private:
+  /// Sets cells of so many knot cells per axis. Returns their number.
+  std::int64_t choose(const TrimOptions& options, std::int64_t together)
+  {
+    std::int64_t total = 1;
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const std::int64_t cells = options.Cells[a];
+      this->Count[a] = std::max<std::int64_t>(1, (cells + together - 1) / together);
+      this->Lower[a] = options.Domain[2 * a];
+      this->PerLength[a] = cells > 0 ? static_cast<double>(cells) /
+          (options.Domain[2 * a + 1] - options.Domain[2 * a]) / static_cast<double>(together)
+                                     : 0;
+      total *= this->Count[a];
+    }
+    return total;
+  }
+
+  /// Those that hold data, each once.
+  std::vector<std::array<std::int64_t, 3>> cellsOf(
+    const std::vector<Position>& data, std::int64_t total) const
+  {
+    std::vector<bool> seen(static_cast<std::size_t>(total));
+    std::vector<std::array<std::int64_t, 3>> cells;
+    for (const Position& x : data)
+    {
+      const std::array<std::int64_t, 3> cell = this->cellOf(x);
+      const std::size_t index = this->flat(cell[0], cell[1], cell[2]);
+      if (!seen[index])
+      {
+        seen[index] = true;
+        cells.push_back(cell);
+      }
+    }
+    return cells;
+  }
+
   std::array<std::int64_t, 3> cellOf(const Position& x) const
   {
     std::array<std::int64_t, 3> cell;

@@ -193,6 +193,12 @@ int vtkIPIASurfaceReconstruction::RequestData(
   vtkPolyData* surface = vtkPolyData::GetData(output);
   surface->Initialize();
   this->NumberOfComponentsLeftOut = this->NumberOfPartsTrimmed = 0;
+  if (std::isnan(this->TrimDistance) || std::isnan(this->HoleSize))
+  {
+    vtkErrorMacro(<< (std::isnan(this->TrimDistance) ? "TrimDistance" : "HoleSize")
+                  << " is not a number. Set one.");
+    return 1;
+  }
   for (int port = 0; port < 2; ++port)
   {
     // A copy of its own keeps the fitter out of this filter's pipeline.
@@ -262,11 +268,9 @@ void vtkIPIASurfaceReconstruction::Trim(vtkPolyData* surface)
 {
   ipia::TrimOptions options;
   options.Distance = this->TrimDistance;
-  // An automatic domain goes on beyond the data on every side.
-  const bool isWider = !vtkMath::AreBoundsInitialized(this->Fitter->GetModelBounds());
-  options.DistanceOnSide = isWider ? LeastTrimDistance : this->TrimDistance;
   options.HoleSize = this->HoleSize;
   std::copy_n(this->Fitter->GetModelBoundsUsed(), 6, options.Domain.begin());
+  bool automatic = true;         // as the fitter tells
   std::array<double, 3> spacing; // of samples
   this->Fitter->GetOutput()->GetSpacing(spacing.data());
   for (std::size_t a = 0; a < 3; ++a)
@@ -277,7 +281,11 @@ void vtkIPIASurfaceReconstruction::Trim(vtkPolyData* surface)
       spacing[a] = (options.Domain[2 * a + 1] - options.Domain[2 * a]) / (2 * options.Cells[a]);
     }
     options.SampleSpacing[a] = options.Cells[a] > 0 ? spacing[a] : 0;
+    const double* given = this->Fitter->GetModelBounds() + 2 * a;
+    automatic = automatic && (options.Cells[a] == 0 || !(given[0] <= given[1]));
   }
+  // An automatic domain goes on beyond the data on every side.
+  options.DistanceOnSide = automatic ? LeastTrimDistance : this->TrimDistance;
   const ipia::TrimResult trimmed =
     ipia::trimUnsupported(surface, this->Fitter->FittedCloud(), options);
   this->NumberOfPartsTrimmed = trimmed.Parts;
