@@ -22,7 +22,24 @@
  *   spacing, which removes most of the error of linear contouring;
  * - point normals from the exact gradient of f, towards f > 0;
  * - the component filter: components that hardly any data point is nearest to are left out;
+ * - trimming: where data end the surface ends, see "Open surfaces";
  * - points in double precision where single would show, such as in map coordinates.
+ *
+ * ### Open surfaces
+ * f = 0 goes on where data end: up to the sides of the domain, or round behind the data. With
+ * TrimUnsupported (the default) it is cut off there. A vertex is unsupported if it is farther from
+ * the data than TrimDistance times their local spacing, which around each point is that of the third
+ * of six sectors of neighbours: uneven density does not count, nor the gaps between scan lines up to
+ * about twenty times as dense along as across. Connected unsupported parts are cut off if they reach
+ * a side of the domain (of an automatic one also where it is nearer than TrimDistance), or if they
+ * are larger than HoleSize; the others are holes in the data and stay filled. The cut runs back
+ * towards the data to half a spacing from the outermost ones, as if a ball were rolled along them,
+ * through triangles rather than along their edges. New vertices lie on f = 0 and have exact normals;
+ * other point arrays are interpolated. Curves are cut alike.
+ *
+ * A hole whose filling reaches a side of the domain, such as one at the very top of a model, is cut
+ * out; more Padding lets it close. An opening inside the domain smaller than HoleSize is taken for a
+ * hole. Closed, evenly sampled surfaces are left as they are.
  *
  * Input ports and SetInputArrayToProcess are those of vtkIPIAImplicitFitter; its parameters are set
  * on GetFitter(). Refusals and warnings are the
@@ -85,8 +102,9 @@ public:
 
   ///@{
   /**
-   * How far the surface may be from the data before it counts as unsupported, in spacings of the
-   * data there: it also bridges gaps and bays at the border up to twice as wide. >= 1, default 3.
+   * How far the surface may be from the data before it counts as unsupported, in local spacings of
+   * the data; gaps and bays of the border up to twice as wide are bridged. On the sides of an
+   * automatic domain it is 1. >= 1, default 3.
    */
   vtkSetClampMacro(TrimDistance, double, 1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TrimDistance, double);
