@@ -12,7 +12,7 @@
 
 int TestSurfaceReconstructionOpenImage(int argc, char* argv[])
 {
-  auto cloud = ipiatest::ToPolyData(ipiatest::MaskPoints(6000, true));
+  auto cloud = ipiatest::ToPolyData(ipiatest::MaskPoints(2500, true));
   vtkNew<vtkIPIASurfaceReconstruction> surface;
   surface->SetInputData(cloud);
   vtkNew<vtkFeatureEdges> border;
@@ -29,9 +29,11 @@ int TestSurfaceReconstructionOpenImage(int argc, char* argv[])
   vtkNew<vtkProperty> inside;
   inside->SetColor(0.9, 0.7, 0.2);
   mask->SetBackfaceProperty(inside);
-  picture.Add(border->GetOutputPort(), 0.9, 0, 0)->GetProperty()->SetLineWidth(3);
+  vtkProperty* line = picture.Add(border->GetOutputPort(), 0.9, 0, 0)->GetProperty();
+  line->SetLineWidth(3);
+  line->LightingOff();
   picture.Add(points->GetOutputPort(), 0, 0, 0)->GetProperty()->SetPointSize(2);
-  picture.LookFrom(0.4, -1.2, -1, 0, 1, 0);
-  picture.Renderer->GetActiveCamera()->Zoom(1.5);
+  picture.LookFrom(0.3, -0.7, -1.2, 0, 1, 0);
+  picture.Renderer->GetActiveCamera()->Zoom(1.3);
   return picture.Compare(argc, argv);
 }
