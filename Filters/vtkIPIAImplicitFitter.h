@@ -161,8 +161,8 @@ class vtkPolyData;
 
 namespace ipia
 {
-struct FitParameters;
 class PointCloud;
+struct FitParameters;
 }
 
 class VTKFILTERSIPIA_EXPORT vtkIPIAImplicitFitter : public vtkImageAlgorithm
@@ -442,7 +442,8 @@ public:
   ///@{
   /**
    * Add the support of f to output 0 as `Support`: the density of rows sum_i B_i(x) sum_k B_i(x_k)
-   * over its median at the points, 1 where data are typical, 0 far from them. Default off.
+   * over its median at the points: without unit, 1 where data are typical, 0 far from them, of a
+   * hierarchy by its finest lattice. Default off.
    */
   vtkSetMacro(GenerateSupport, bool);
   vtkGetMacro(GenerateSupport, bool);

@@ -6,6 +6,7 @@
 #include "IPIAIdentity.h"
 #include "IPIAPointCloud.h"
 #include "IPIAProgress.h"
+#include "IPIATrim.h"
 #include "vtkIPIAImplicitFitter.h"
 #include "vtkIPIAImplicitFunction.h"
 
@@ -43,6 +44,8 @@ constexpr double ReachOfData = 3;
 /// Rounding to float shows beyond this share of the knot spacing.
 constexpr double VisibleRounding = 1e-3;
 constexpr double FloatRounding = 6e-8;
+/// Data at a side of the domain are no farther from it than this many of their spacings.
+constexpr double LeastTrimDistance = 1;
 /// Points of a polyline, the most that vtkStripper takes; it leaves longer loops open.
 constexpr int LongestPolyline = 100000;
 
@@ -97,12 +100,34 @@ void contourInPlane(vtkImageData* image, vtkPolyData* curve)
   }
   curve->SetPoints(points);
 }
+
+/// Newton's step of a vertex, and the direction of the gradient where it ends.
+void moveOntoZeroSet(
+  vtkIPIAImplicitFunction* function, const ipia::NewtonStep& newton, double x[3], double normal[3])
+{
+  const double f = function->EvaluateFunctionAndGradient(x, normal);
+  const double slope = vtkMath::Norm(normal);
+  const double step = newton.along(f, slope);
+  if (step != 0)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      x[axis] += step * normal[axis] / slope;
+    }
+    function->EvaluateFunctionAndGradient(x, normal);
+  }
+  vtkMath::Normalize(normal);
+}
 }
 
 vtkIPIASurfaceReconstruction::vtkIPIASurfaceReconstruction()
   : ComponentFilter(true)
+  , TrimUnsupported(true)
+  , TrimDistance(3)
+  , HoleSize(0.3)
   , OutputPointsPrecision(DEFAULT_PRECISION)
   , NumberOfComponentsLeftOut(0)
+  , NumberOfPartsTrimmed(0)
 {
   this->SetNumberOfInputPorts(2);
   this->SetInputArrayToProcess(
@@ -174,7 +199,13 @@ int vtkIPIASurfaceReconstruction::RequestData(
 {
   vtkPolyData* surface = vtkPolyData::GetData(output);
   surface->Initialize();
-  this->NumberOfComponentsLeftOut = 0;
+  this->NumberOfComponentsLeftOut = this->NumberOfPartsTrimmed = 0;
+  if (std::isnan(this->TrimDistance) || std::isnan(this->HoleSize))
+  {
+    vtkErrorMacro(<< (std::isnan(this->TrimDistance) ? "TrimDistance" : "HoleSize")
+                  << " is not a number. Set one.");
+    return 1;
+  }
   ipia::Identity identity;
   for (int port = 0; port < 2; ++port)
   {
@@ -221,8 +252,11 @@ int vtkIPIASurfaceReconstruction::RequestData(
   }
   if (done && this->ComponentFilter)
   {
-    this->NumberOfComponentsLeftOut = ipia::leaveOutComponents(
-      surface, component, this->Fitter->FittedCloud().Positions, ReachOfData * this->KnotSpacing());
+    this->LeaveOutComponents(surface, component);
+  }
+  if (done && this->TrimUnsupported)
+  {
+    this->Trim(surface);
   }
   if (done)
   {
@@ -242,6 +276,59 @@ int vtkIPIASurfaceReconstruction::RequestData(
     surface->Initialize();
   }
   return 1;
+}
+
+void vtkIPIASurfaceReconstruction::LeaveOutComponents(
+  vtkPolyData* surface, const std::vector<vtkIdType>& component)
+{
+  this->NumberOfComponentsLeftOut += ipia::leaveOutComponents(
+    surface, component, this->Fitter->FittedCloud().Positions, ReachOfData * this->KnotSpacing());
+}
+
+void vtkIPIASurfaceReconstruction::Trim(vtkPolyData* surface)
+{
+  ipia::TrimOptions options;
+  options.Distance = this->TrimDistance;
+  options.HoleSize = this->HoleSize;
+  std::copy_n(this->Fitter->GetModelBoundsUsed(), 6, options.Domain.begin());
+  bool automatic = true;         // as the fitter tells
+  std::array<double, 3> spacing; // of samples
+  this->Fitter->GetOutput()->GetSpacing(spacing.data());
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    options.Cells[a] = std::max(0, this->Fitter->GetGridSizeUsed()[a] - 3);
+    if (this->Fitter->IsInBricks())
+    {
+      spacing[a] = (options.Domain[2 * a + 1] - options.Domain[2 * a]) / (2 * options.Cells[a]);
+    }
+    options.SampleSpacing[a] = options.Cells[a] > 0 ? spacing[a] : 0;
+    const double* given = this->Fitter->GetModelBounds() + 2 * a;
+    automatic = automatic && (options.Cells[a] == 0 || !(given[0] <= given[1]));
+  }
+  // An automatic domain goes on beyond the data on every side.
+  options.DistanceOnSide = automatic ? LeastTrimDistance : this->TrimDistance;
+  const ipia::TrimResult trimmed =
+    ipia::trimUnsupported(surface, this->Fitter->FittedCloud(), options);
+  this->NumberOfPartsTrimmed = trimmed.Parts;
+  if (trimmed.Parts == 0)
+  {
+    return;
+  }
+  const ipia::NewtonStep newton(spacing.data());
+  vtkDataArray* normals = surface->GetPointData()->GetNormals();
+  for (const vtkIdType i : trimmed.NewPoints)
+  {
+    double x[3], normal[3];
+    surface->GetPoint(i, x);
+    moveOntoZeroSet(this->Fitter->GetImplicitFunction(), newton, x, normal);
+    surface->GetPoints()->SetPoint(i, x);
+    normals->SetTuple(i, normal);
+  }
+  if (this->ComponentFilter)
+  {
+    // What held a piece together may be gone.
+    this->LeaveOutComponents(surface, ipia::componentsOf(surface));
+  }
 }
 
 double vtkIPIASurfaceReconstruction::KnotSpacing() const
@@ -312,24 +399,13 @@ void vtkIPIASurfaceReconstruction::MoveOntoZeroSet(vtkPolyData* surface, vtkImag
     {
       for (vtkIdType i = begin; i < end; ++i)
       {
-        double x[3], g[3];
+        double x[3], normal[3];
         before->GetPoint(i, x);
         vtkMatrix3x3::MultiplyPoint(direction, x, x);
         vtkMath::Add(x, origin, x);
-        const double f = function->EvaluateFunctionAndGradient(x, g);
-        const double slope = vtkMath::Norm(g);
-        const double step = newton.along(f, slope);
-        if (step != 0)
-        {
-          for (int axis = 0; axis < 3; ++axis)
-          {
-            x[axis] += step * g[axis] / slope;
-          }
-          function->EvaluateFunctionAndGradient(x, g);
-        }
-        vtkMath::Normalize(g);
+        moveOntoZeroSet(function, newton, x, normal);
         after->SetPoint(i, x);
-        normals->SetTuple(i, g);
+        normals->SetTuple(i, normal);
       }
     });
   surface->SetPoints(after);
@@ -340,8 +416,12 @@ void vtkIPIASurfaceReconstruction::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ComponentFilter: " << this->ComponentFilter << "\n";
+  os << indent << "TrimUnsupported: " << this->TrimUnsupported << "\n";
+  os << indent << "TrimDistance: " << this->TrimDistance << "\n";
+  os << indent << "HoleSize: " << this->HoleSize << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
   os << indent << "NumberOfComponentsLeftOut: " << this->NumberOfComponentsLeftOut << "\n";
+  os << indent << "NumberOfPartsTrimmed: " << this->NumberOfPartsTrimmed << "\n";
   os << indent << "Fitter:\n";
   this->Fitter->PrintSelf(os, indent.GetNextIndent());
 }

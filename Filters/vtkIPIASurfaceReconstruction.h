@@ -24,7 +24,24 @@
  * - the point arrays of the input (colours, scalars, vectors) at its vertices, as smooth functions
  *   v(x) fitted as vtkIPIAImplicitFitter tells, with the active attributes that they were;
  * - the component filter: components that hardly any data point is nearest to are left out;
+ * - trimming: where data end the surface ends, see "Open surfaces";
  * - points in double precision where single would show, such as in map coordinates.
+ *
+ * ### Open surfaces
+ * f = 0 goes on where data end: up to the sides of the domain, or round behind the data. With
+ * TrimUnsupported (the default) it is cut off there. A vertex is unsupported if it is farther from
+ * the data than TrimDistance times their local spacing, which around each point is that of the
+ * third of six sectors of neighbours: uneven density does not count, nor the gaps between scan
+ * lines up to about twenty times as dense along as across. Connected unsupported parts are cut off
+ * if they reach a side of the domain (of an automatic one also where it is nearer than
+ * TrimDistance), or if they are larger than HoleSize; the others are holes in the data and stay
+ * filled. The cut runs back towards the data to half a spacing from the outermost ones, as if a
+ * ball were rolled along them, through triangles rather than along their edges. New vertices lie on
+ * f = 0 and have exact normals; other point arrays are interpolated. Curves are cut alike.
+ *
+ * A hole whose filling reaches a side of the domain, such as one at the very top of a model, is cut
+ * out; more Padding lets it close. An opening inside the domain smaller than HoleSize is taken for
+ * a hole. Closed, evenly sampled surfaces are left as they are.
  *
  * Input ports and SetInputArrayToProcess are those of vtkIPIAImplicitFitter; its parameters are set
  * on GetFitter(). Refusals and warnings are the
@@ -84,6 +101,34 @@ public:
 
   ///@{
   /**
+   * Cut the surface where the data end; see "Open surfaces" above. Default on.
+   */
+  vtkSetMacro(TrimUnsupported, bool);
+  vtkGetMacro(TrimUnsupported, bool);
+  vtkBooleanMacro(TrimUnsupported, bool);
+  ///@}
+
+  ///@{
+  /**
+   * How far the surface may be from the data before it counts as unsupported, in local spacings of
+   * the data; gaps and bays of the border up to twice as wide are bridged. On the sides of an
+   * automatic domain it is 1. >= 1, default 3.
+   */
+  vtkSetClampMacro(TrimDistance, double, 1.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TrimDistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Unsupported parts inside the domain up to this size are holes and stay filled: their area (in
+   * 2-D their length) over that of the supported surface. >= 0, default 0.3.
+   */
+  vtkSetClampMacro(HoleSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(HoleSize, double);
+  ///@}
+
+  ///@{
+  /**
    * vtkAlgorithm::SINGLE_PRECISION, DOUBLE_PRECISION or DEFAULT_PRECISION (the default): double
    * where rounding to float would exceed a thousandth of the knot spacing.
    */
@@ -95,6 +140,11 @@ public:
    * Number of components that the component filter left out in the last update.
    */
   vtkGetMacro(NumberOfComponentsLeftOut, int);
+
+  /**
+   * Number of unsupported parts that were cut off in the last update.
+   */
+  vtkGetMacro(NumberOfPartsTrimmed, int);
 
   /// Covers the fitter's parameters.
   vtkMTimeType GetMTime() override;
@@ -108,8 +158,12 @@ protected:
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
 
   bool ComponentFilter;
+  bool TrimUnsupported;
+  double TrimDistance;
+  double HoleSize;
   int OutputPointsPrecision;
   int NumberOfComponentsLeftOut;
+  int NumberOfPartsTrimmed;
 
 private:
   vtkIPIASurfaceReconstruction(const vtkIPIASurfaceReconstruction&) = delete;
@@ -120,6 +174,8 @@ private:
   int PointType() const;
   void ContourImage(vtkPolyData* surface);
   void MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled);
+  void LeaveOutComponents(vtkPolyData* surface, const std::vector<vtkIdType>& component);
+  void Trim(vtkPolyData* surface);
 
   vtkNew<vtkIPIAImplicitFitter> Fitter;
   std::vector<vtkMTimeType> InputIdentity; // of what the fitter has copies of

@@ -551,7 +551,9 @@ def reconstruct(path, folder, picture):
         print(f"curve of {surface.GetNumberOfPoints():,} points, ", end="")
     else:
         edges = number_of_open_edges(surface)
-        closed = "closed" if edges == 0 else f"{edges} open edges, where it meets the domain's sides"
+        trimmed = reconstruction.GetNumberOfPartsTrimmed() > 0
+        where = "the points end" if trimmed else "it meets the domain's sides"
+        closed = "closed" if edges == 0 else f"{edges} open edges, where {where}"
         print(f"surface of {surface.GetNumberOfPolys():,} triangles, {closed}, ", end="")
     print(f"{components} component{'s' if components != 1 else ''}", end="")
     left_out = reconstruction.GetNumberOfComponentsLeftOut()

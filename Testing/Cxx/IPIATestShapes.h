@@ -88,6 +88,24 @@ inline OrientedPoints SpherePoints(
   return cloud;
 }
 
+/// The upper part of an ellipsoid, of n points in all, with or without two holes for the eyes.
+inline OrientedPoints MaskPoints(int n, bool eyes)
+{
+  OrientedPoints cloud;
+  const Vector3 axes{ 1, 1.3, 0.6 };
+  for (const Vector3& u : SpherePoints(n).Positions)
+  {
+    const Vector3 x{ axes[0] * u[0], axes[1] * u[1], axes[2] * u[2] };
+    Vector3 normal{ u[0] / axes[0], u[1] / axes[1], u[2] / axes[2] };
+    vtkMath::Normalize(normal.data());
+    if (x[2] > 0.15 && !(eyes && std::hypot(std::abs(x[0]) - 0.35, x[1] - 0.3) < 0.14))
+    {
+      cloud.Add(x, normal);
+    }
+  }
+  return cloud;
+}
+
 inline vtkSmartPointer<vtkPolyData> SphereCloud(
   int n = 600, double radius = 1, const Vector3& centre = { 0, 0, 0 })
 {

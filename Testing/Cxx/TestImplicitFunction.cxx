@@ -368,26 +368,31 @@ void TestBeyondDomain(Checks& checks)
     "f beyond the domain");
 }
 
-/// About 1 at the data, 0 in the corner of the domain.
-void TestSupport(Checks& checks)
+/// About 1 at the data, 0 in the corner of the domain, whatever the unit of length.
+void TestSupport(Checks& checks, ipiatest::Method method)
 {
-  auto fitter = ipiatest::NewClassicFitter(ipiatest::SphereCloud(3000), 30);
-  fitter->SetSampleDimensions(101, 101, 101);
-  fitter->GenerateSupportOn();
-  fitter->Update();
-  vtkImageData* image = fitter->GetOutput();
-  vtkDataArray* support = image->GetPointData()->GetArray("Support");
-  double least = VTK_DOUBLE_MAX, most = 0;
-  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  for (double unit : { 1., 1000. })
   {
-    if (std::abs(vtkMath::Norm(image->GetPoint(i)) - 1) < 0.1 * ipiatest::KnotSpacing(fitter))
+    auto fitter = ipiatest::NewFitter(method, ipiatest::SphereCloud(3000, unit), 30);
+    fitter->SetSampleDimensions(101, 101, 101);
+    fitter->GenerateSupportOn();
+    fitter->Update();
+    vtkImageData* image = fitter->GetOutput();
+    vtkDataArray* support = image->GetPointData()->GetArray("Support");
+    double least = VTK_DOUBLE_MAX, most = 0;
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
     {
-      least = std::min(least, support->GetComponent(i, 0));
-      most = std::max(most, support->GetComponent(i, 0));
+      if (std::abs(vtkMath::Norm(image->GetPoint(i)) - unit) < 0.1 * ipiatest::KnotSpacing(fitter))
+      {
+        least = std::min(least, support->GetComponent(i, 0));
+        most = std::max(most, support->GetComponent(i, 0));
+      }
     }
+    const std::string what = Text(ipiatest::NameOf(method), ", radius ", unit);
+    checks.That(
+      least > 0.8 && most < 1.2, Text(what, ": support at the data (", least, " to ", most, ")"));
+    checks.Equal(support->GetComponent(0, 0), 0.0, what + ": support in a corner");
   }
-  checks.That(least > 0.8 && most < 1.2, Text("support at the data (", least, " to ", most, ")"));
-  checks.Equal(support->GetComponent(0, 0), 0.0, "support in a corner");
 }
 
 double LargestValueOn(vtkPolyData* data, vtkImplicitFunction* function)
@@ -457,7 +462,10 @@ int TestImplicitFunction(int argc, char* argv[])
   TestNoNumber(checks);
   TestScaledWeights(checks);
   TestBeyondDomain(checks);
-  TestSupport(checks);
+  for (ipiatest::Method method : ipiatest::Methods)
+  {
+    TestSupport(checks, method);
+  }
   TestFilters(checks);
   delete[] folder;
   return checks.Result();
