@@ -815,6 +815,11 @@ const ipia::PointCloud& vtkIPIAImplicitFitter::FittedCloud() const
   return this->State->Current->Cloud;
 }
 
+const ipia::Frame& vtkIPIAImplicitFitter::FittedFrame() const
+{
+  return this->State->Current->Frame;
+}
+
 void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

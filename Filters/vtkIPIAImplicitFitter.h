@@ -161,6 +161,7 @@ class vtkPolyData;
 
 namespace ipia
 {
+class Frame;
 class PointCloud;
 struct FitParameters;
 }
@@ -594,6 +595,7 @@ private:
   bool ContourBricks(int pointType, const std::function<bool(double)>& progress,
     vtkPolyData* surface, std::vector<vtkIdType>& component) const;
   const ipia::PointCloud& FittedCloud() const;
+  const ipia::Frame& FittedFrame() const;
   void EvaluateAttributes(vtkPolyData* surface);
 
   ipia::FitParameters Parameters() const;

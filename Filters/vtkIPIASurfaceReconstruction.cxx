@@ -118,6 +118,33 @@ void moveOntoZeroSet(
   }
   vtkMath::Normalize(normal);
 }
+
+/// Trims in the frame of a fit, along whose axes its domain lies.
+ipia::TrimResult trimInFrame(vtkPolyData* surface, const ipia::PointCloud& data,
+  const ipia::Frame& frame, const ipia::TrimOptions& options)
+{
+  if (!frame.isTurned())
+  {
+    return ipia::trimUnsupported(surface, data, options);
+  }
+  const auto turn = [surface](const auto& map)
+  {
+    for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+    {
+      surface->GetPoints()->SetPoint(i, map(surface->GetPoint(i)).data());
+    }
+  };
+  ipia::PointCloud turned = data;
+  for (std::size_t k = 0; k < turned.Positions.size(); ++k)
+  {
+    turned.Positions[k] = frame.toFrame(data.Positions[k].data());
+    turned.Normals[k] = frame.vectorToFrame(data.Normals[k].data());
+  }
+  turn([&frame](const double* x) { return frame.toFrame(x); });
+  ipia::TrimResult result = ipia::trimUnsupported(surface, turned, options);
+  turn([&frame](const double* x) { return frame.toWorld(x); });
+  return result;
+}
 }
 
 vtkIPIASurfaceReconstruction::vtkIPIASurfaceReconstruction()
@@ -308,7 +335,7 @@ void vtkIPIASurfaceReconstruction::Trim(vtkPolyData* surface)
   // An automatic domain goes on beyond the data on every side.
   options.DistanceOnSide = automatic ? LeastTrimDistance : this->TrimDistance;
   const ipia::TrimResult trimmed =
-    ipia::trimUnsupported(surface, this->Fitter->FittedCloud(), options);
+    trimInFrame(surface, this->Fitter->FittedCloud(), this->Fitter->FittedFrame(), options);
   this->NumberOfPartsTrimmed = trimmed.Parts;
   if (trimmed.Parts == 0)
   {

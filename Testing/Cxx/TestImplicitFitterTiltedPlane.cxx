@@ -185,6 +185,14 @@ int TestImplicitFitterTiltedPlane(int, char*[])
 {
   Checks checks;
   const OrientedPoints flower = ipiatest::PointsOn(ipiatest::Flower(), 300, 2, -1);
+  OrientedPoints half; // whose curve is trimmed
+  for (std::size_t k = 0; k < flower.Positions.size(); ++k)
+  {
+    if (flower.Positions[k][0] > 2)
+    {
+      half.Add(flower.Positions[k], flower.Normals[k]);
+    }
+  }
   for (const auto& [degrees, axis, shift] :
     { std::make_tuple(30., Vector3{ 1, 0, 0 }, 0.), std::make_tuple(-40., Vector3{ 1, 2, 0 }, 50.),
       std::make_tuple(44., Vector3{ 3, -1, 0 }, 0.) })
@@ -195,6 +203,7 @@ int TestImplicitFitterTiltedPlane(int, char*[])
       CheckSameFit(checks, flower, method, tilt, Text(NameOf(method), ", ", degrees, " degrees"));
     }
     CheckSameCurve(checks, flower, tilt, Text("curve, ", degrees, " degrees"));
+    CheckSameCurve(checks, half, tilt, Text("open curve, ", degrees, " degrees"));
   }
   CheckContour(checks, flower, Tilt(30, { 1, 0, 0 }, 0));
   CheckRefused(checks, Moved(flower, Tilt(30, { 1, 0, 0 }, 0)));
