@@ -142,7 +142,7 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
   {
     source->resize(order.size());
     std::transform(
-      order.begin(), order.end(), source->begin(), [](const auto& entry) { return entry.second; });
+      order.begin(), order.end(), source->begin(), [](const auto& entry) { return entry.Row; });
   }
   return samples;
 }
