@@ -7,7 +7,9 @@
 #include "vtkCellArray.h"
 #include "vtkFloatArray.h"
 #include "vtkFlyingEdges3D.h"
+#include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
+#include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -33,9 +35,26 @@ using Block = BrickSpline<3>::Block;
 struct PartSurface
 {
   std::vector<Point<3>> Points; ///< relative to the corner of the domain
-  std::vector<Point<3>> Normals;
+  std::vector<std::array<float, 3>> Normals;
   std::vector<std::int64_t> Edges; ///< per point: its edge if it is on the border of a block, or -1
-  std::vector<vtkIdType> Triangles;
+  std::vector<std::array<std::int32_t, 3>> Triangles;
+
+  // For the surface of all parts.
+  std::vector<vtkIdType> Components; ///< per point, of this part alone
+  std::vector<vtkIdType> Ids;        ///< per point, in the whole
+  vtkIdType FirstId = 0;             ///< of the points that no part before this has
+  vtkIdType FirstTriangle = 0, FirstComponent = 0;
+
+  void findComponents()
+  {
+    DisjointSets sets(static_cast<vtkIdType>(this->Points.size()));
+    for (const auto& corners : this->Triangles)
+    {
+      sets.unite(corners[0], corners[1]);
+      sets.unite(corners[0], corners[2]);
+    }
+    this->Components = sets.labels();
+  }
 };
 
 /// Samples and contours one block after the other.
@@ -110,7 +129,7 @@ private:
     const Point<3>& spacing = this->Function.lattice().Spacing;
     vtkPolyData* found = this->Contour->GetOutput();
     vtkPoints* points = found->GetPoints();
-    const auto first = static_cast<vtkIdType>(surface.Points.size());
+    const auto first = static_cast<std::int32_t>(surface.Points.size());
     Point<3> corner, begin; // in cells
     for (int a = 0; a < 3; ++a)
     {
@@ -141,7 +160,9 @@ private:
     for (vtkIdType i = 0; i < n; ++i)
     {
       surface.Points.push_back((corner + this->Positions.col(i)).cwiseProduct(spacing));
-      surface.Normals.push_back(this->Gradients.col(i).cwiseQuotient(spacing).normalized());
+      const Point<3> normal = this->Gradients.col(i).cwiseQuotient(spacing).normalized();
+      surface.Normals.push_back({ static_cast<float>(normal[0]), static_cast<float>(normal[1]),
+        static_cast<float>(normal[2]) });
     }
     vtkCellArray* triangles = found->GetPolys();
     vtkIdType corners = 0;
@@ -149,9 +170,8 @@ private:
     for (triangles->InitTraversal(); triangles->GetNextCell(corners, ids);)
     {
       // Flying edges' triangles face towards smaller values.
-      surface.Triangles.push_back(first + ids[0]);
-      surface.Triangles.push_back(first + ids[2]);
-      surface.Triangles.push_back(first + ids[1]);
+      surface.Triangles.push_back({ first + static_cast<std::int32_t>(ids[0]),
+        first + static_cast<std::int32_t>(ids[2]), first + static_cast<std::int32_t>(ids[1]) });
     }
   }
 
@@ -189,62 +209,109 @@ private:
   Vector F;
 };
 
-/// Joins the parts: vertices on the same edge become one. Returns the component of each vertex.
-std::vector<vtkIdType> join(const std::vector<PartSurface>& parts, const Placement<3>& place,
-  int pointType, vtkPolyData* surface)
+/// Numbers the points and components of all parts: vertices on the same edge become one. Returns
+/// the number of points, and the component in the whole of each component of a part.
+std::pair<vtkIdType, std::vector<vtkIdType>> number(std::vector<PartSurface>& parts)
 {
+  struct Vertex
+  {
+    vtkIdType Id, Component;
+  };
+  std::unordered_map<std::int64_t, Vertex> onBorder;
   DisjointSets components;
+  vtkIdType points = 0, triangles = 0, numberOfComponents = 0;
+  for (PartSurface& part : parts)
+  {
+    part.FirstId = points;
+    part.FirstTriangle = triangles;
+    part.FirstComponent = numberOfComponents;
+    triangles += static_cast<vtkIdType>(part.Triangles.size());
+    part.Ids.resize(part.Points.size());
+    for (std::size_t k = 0; k < part.Ids.size(); ++k)
+    {
+      Vertex vertex{ points, part.FirstComponent + part.Components[k] };
+      for (; numberOfComponents <= vertex.Component; ++numberOfComponents)
+      {
+        components.add();
+      }
+      if (part.Edges[k] >= 0)
+      {
+        const Vertex& first = onBorder.emplace(part.Edges[k], vertex).first->second;
+        components.unite(first.Component, vertex.Component);
+        vertex = first;
+      }
+      part.Ids[k] = vertex.Id;
+      points += vertex.Id == points;
+    }
+  }
+  return { points, components.labels() };
+}
+
+/// Joins the parts. Returns the component of each vertex.
+std::vector<vtkIdType> join(std::vector<PartSurface>& parts, const Placement<3>& place,
+  int pointType, int threads, vtkPolyData* surface)
+{
+  const auto count = static_cast<std::int64_t>(parts.size());
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::int64_t p = 0; p < count; ++p)
+  {
+    parts[static_cast<std::size_t>(p)].findComponents();
+  }
+  const auto [numberOfPoints, componentOf] = number(parts);
+  const vtkIdType numberOfTriangles = parts.empty()
+    ? 0
+    : parts.back().FirstTriangle + static_cast<vtkIdType>(parts.back().Triangles.size());
+
   vtkNew<vtkPoints> points;
   points->SetDataType(pointType);
+  points->SetNumberOfPoints(numberOfPoints);
   vtkNew<vtkFloatArray> normals;
   normals->SetName("Normals");
   normals->SetNumberOfComponents(3);
+  normals->SetNumberOfTuples(numberOfPoints);
+  vtkNew<vtkIdTypeArray> offsets, corners;
+  offsets->SetNumberOfValues(numberOfTriangles + 1);
+  corners->SetNumberOfValues(3 * numberOfTriangles);
+  offsets->SetValue(numberOfTriangles, 3 * numberOfTriangles);
+  std::vector<vtkIdType> component(static_cast<std::size_t>(numberOfPoints));
+  const std::vector<vtkIdType>& labels = componentOf;
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::int64_t p = 0; p < count; ++p)
+  {
+    const PartSurface& part = parts[static_cast<std::size_t>(p)];
+    vtkIdType next = part.FirstId;
+    for (std::size_t k = 0; k < part.Ids.size(); ++k)
+    {
+      // The others are those of an earlier point.
+      if (part.Ids[k] == next)
+      {
+        double x[3];
+        vtkMath::Add(place.Origin.data(), part.Points[k].data(), x);
+        points->SetPoint(next, x);
+        normals->SetTypedTuple(next, part.Normals[k].data());
+        component[static_cast<std::size_t>(next)] =
+          labels[static_cast<std::size_t>(part.FirstComponent + part.Components[k])];
+        ++next;
+      }
+    }
+    vtkIdType triangle = part.FirstTriangle;
+    for (const auto& local : part.Triangles)
+    {
+      offsets->SetValue(triangle, 3 * triangle);
+      for (int k = 0; k < 3; ++k)
+      {
+        corners->SetValue(
+          3 * triangle + k, part.Ids[static_cast<std::size_t>(local[static_cast<std::size_t>(k)])]);
+      }
+      ++triangle;
+    }
+  }
   vtkNew<vtkCellArray> triangles;
-  vtkIdType most = 0, count = 0;
-  for (const PartSurface& part : parts)
-  {
-    most += static_cast<vtkIdType>(part.Points.size());
-    count += static_cast<vtkIdType>(part.Triangles.size() / 3);
-  }
-  points->Allocate(most);
-  normals->Allocate(3 * most);
-  triangles->AllocateExact(count, 3 * count);
-  std::unordered_map<std::int64_t, vtkIdType> onBorder;
-  std::vector<vtkIdType> ids;
-  for (const PartSurface& part : parts)
-  {
-    ids.clear();
-    for (std::size_t k = 0; k < part.Points.size(); ++k)
-    {
-      vtkIdType id = points->GetNumberOfPoints();
-      if (part.Edges[k] >= 0)
-      {
-        id = onBorder.emplace(part.Edges[k], id).first->second;
-      }
-      ids.push_back(id);
-      if (id == points->GetNumberOfPoints())
-      {
-        const Point<3>& x = part.Points[k];
-        points->InsertNextPoint(
-          place.Origin[0] + x[0], place.Origin[1] + x[1], place.Origin[2] + x[2]);
-        normals->InsertNextTuple(part.Normals[k].data());
-        components.add();
-      }
-    }
-    for (std::size_t t = 0; t < part.Triangles.size(); t += 3)
-    {
-      const vtkIdType corners[3] = { ids[static_cast<std::size_t>(part.Triangles[t])],
-        ids[static_cast<std::size_t>(part.Triangles[t + 1])],
-        ids[static_cast<std::size_t>(part.Triangles[t + 2])] };
-      triangles->InsertNextCell(3, corners);
-      components.unite(corners[0], corners[1]);
-      components.unite(corners[0], corners[2]);
-    }
-  }
+  triangles->SetData(offsets, corners);
   surface->SetPoints(points);
   surface->SetPolys(triangles);
   surface->GetPointData()->SetNormals(normals);
-  return components.labels();
+  return component;
 }
 }
 
@@ -300,7 +367,7 @@ bool contourBricks(const BrickSpline<3>& function, const Placement<3>& place, in
   {
     return false;
   }
-  component = join(surfaces, place, pointType, surface);
+  component = join(surfaces, place, pointType, threads, surface);
   return true;
 }
 }

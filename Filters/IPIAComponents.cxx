@@ -35,7 +35,7 @@ void forCells(vtkCellArray* cells, const Action& action)
 
 /// How many data points are nearer to the component than to any other.
 double dataOf(vtkPolyData* surface, const std::vector<vtkIdType>& component, vtkIdType label,
-  const vtkBoundingBox& extent, const std::vector<std::array<double, 3>>& data, double reach)
+  const vtkBoundingBox& extent, const SpacePoints& data, double reach)
 {
   vtkBoundingBox near(extent), around(extent);
   near.Inflate(reach);
@@ -170,7 +170,7 @@ std::vector<vtkIdType> componentsOf(vtkPolyData* surface)
 }
 
 int leaveOutComponents(vtkPolyData* surface, const std::vector<vtkIdType>& component,
-  const std::vector<std::array<double, 3>>& data, double reach)
+  const SpacePoints& data, double reach)
 {
   const vtkIdType n =
     component.empty() ? 0 : 1 + *std::max_element(component.begin(), component.end());

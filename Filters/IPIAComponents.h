@@ -6,9 +6,10 @@
 #ifndef IPIAComponents_h
 #define IPIAComponents_h
 
+#include "IPIAPointCloud.h"
+
 #include "vtkType.h"
 
-#include <array>
 #include <vector>
 
 class vtkPolyData;
@@ -47,7 +48,7 @@ std::vector<vtkIdType> componentsOf(vtkPolyData* surface);
  * @return the number of components that were left out
  */
 int leaveOutComponents(vtkPolyData* surface, const std::vector<vtkIdType>& component,
-  const std::vector<std::array<double, 3>>& data, double reach);
+  const SpacePoints& data, double reach);
 }
 
 #endif

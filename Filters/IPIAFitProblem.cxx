@@ -2,6 +2,7 @@
 #include "IPIAFitProblem.h"
 
 #include "Core/AutomaticLattice.h"
+#include "Core/Parallel.h"
 #include "IPIAControlLattice.h"
 #include "IPIAMemory.h"
 #include "IPIAText.h"
@@ -252,12 +253,17 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
   if (!(allGiven || (automatic && anyGiven)))
   {
     Points<Dim> positions(Dim, this->Cloud.Positions.size());
-    for (std::size_t k = 0; k < this->Cloud.Positions.size(); ++k)
-    {
-      positions.col(static_cast<Eigen::Index>(k)) = place.toLocal(this->Cloud.Positions[k].data());
-    }
+    parallelChunks(positions.cols(), resolveThreads(0),
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t k = begin; k < end; ++k)
+        {
+          positions.col(k) =
+            place.toLocal(this->Cloud.Positions[static_cast<std::size_t>(k)].data());
+        }
+      });
     wanted = (parameters.isClassic() ? ClassicSpacing : HierarchicalSpacing) *
-      pointSpacing(positions, box);
+      pointSpacing(positions, box, 0);
   }
   const double h = std::min(std::max(wanted, longest / MostSpacings), longest / FewestSpacings);
 
@@ -411,30 +417,23 @@ void FitProblem::DropPointsOutside()
     return true;
   };
   PointCloud& cloud = this->Cloud;
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < cloud.Positions.size(); ++k)
-  {
-    if (inside(cloud.Positions[k]))
+  const auto before = static_cast<vtkIdType>(cloud.Positions.size());
+  const auto staysInside = [&](std::size_t k) { return inside(cloud.Positions[k]); };
+  this->OutsideBounds = parallelSum<vtkIdType>(before, resolveThreads(0),
+    [&](vtkIdType begin, vtkIdType end)
     {
-      cloud.Positions[kept] = cloud.Positions[k];
-      cloud.Normals[kept] = cloud.Normals[k];
-      cloud.Ids[kept] = cloud.Ids[k];
-      for (std::vector<double>* scalars : { &cloud.Weights, &cloud.LocalFairing })
+      vtkIdType outside = 0;
+      for (vtkIdType k = begin; k < end; ++k)
       {
-        if (!scalars->empty())
-        {
-          (*scalars)[kept] = (*scalars)[k];
-        }
+        outside += !staysInside(static_cast<std::size_t>(k));
       }
-      ++kept;
-    }
+      return outside;
+    });
+  if (this->OutsideBounds > 0)
+  {
+    cloud.keepIf(staysInside);
   }
-  this->OutsideBounds = static_cast<vtkIdType>(cloud.Positions.size() - kept);
-  cloud.Positions.resize(kept);
-  cloud.Normals.resize(kept);
-  cloud.Ids.resize(kept);
-  cloud.Weights.resize(cloud.Weights.empty() ? 0 : kept);
-  cloud.LocalFairing.resize(cloud.LocalFairing.empty() ? 0 : kept);
+  const std::size_t kept = cloud.Positions.size();
   std::size_t keptRows = 0;
   for (std::size_t k = 0; k < cloud.ExtraPositions.size(); ++k)
   {

@@ -21,8 +21,7 @@ constexpr double OffsetInSpacings = 1.5;
 constexpr int AutomaticProgressiveIterations = 100, AutomaticConjugateIterations = 15;
 
 template <int Dim>
-Points<Dim> toLocal(
-  const Placement<Dim>& place, const std::vector<std::array<double, 3>>& positions)
+Points<Dim> toLocal(const Placement<Dim>& place, const SpacePoints& positions)
 {
   Points<Dim> local(Dim, static_cast<Eigen::Index>(positions.size()));
   parallelChunks(local.cols(), resolveThreads(0),
@@ -104,10 +103,14 @@ Points<Dim> normalsOf(const FitProblem& problem, const Placement<Dim>& place)
 {
   const auto& normals = problem.Cloud.Normals;
   Points<Dim> local(Dim, static_cast<Eigen::Index>(normals.size()));
-  for (std::size_t k = 0; k < normals.size(); ++k)
-  {
-    local.col(static_cast<Eigen::Index>(k)) = place.toLocalVector(normals[k].data());
-  }
+  parallelChunks(local.cols(), resolveThreads(0),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        local.col(k) = place.toLocalVector(normals[static_cast<std::size_t>(k)].data());
+      }
+    });
   return local;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IPIAPointCloud.h"
 
+#include "Core/Parallel.h"
 #include "IPIAText.h"
 
 #include "vtkAlgorithm.h"
@@ -55,6 +56,36 @@ constexpr struct
 } PointScalars[] = { { PointCloud::WeightsIndex, "row weights" },
   { PointCloud::LocalFairingIndex, "local fairing weights" } };
 }
+
+/// What a part of the points shows.
+struct PointCloud::Found
+{
+  LeftOutCounts LeftOut;
+  std::array<double, 6> Bounds = { VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX,
+    VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX };
+  bool AnyNormal = false, AnyWeight = false;
+
+  void include(const std::array<double, 3>& low, const std::array<double, 3>& high)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      this->Bounds[2 * a] = std::min(this->Bounds[2 * a], low[a]);
+      this->Bounds[2 * a + 1] = std::max(this->Bounds[2 * a + 1], high[a]);
+    }
+  }
+
+  Found& operator+=(const Found& other)
+  {
+    this->LeftOut.NonFinitePoints += other.LeftOut.NonFinitePoints;
+    this->LeftOut.InvalidNormals += other.LeftOut.InvalidNormals;
+    this->LeftOut.InvalidWeights += other.LeftOut.InvalidWeights;
+    this->include({ other.Bounds[0], other.Bounds[2], other.Bounds[4] },
+      { other.Bounds[1], other.Bounds[3], other.Bounds[5] });
+    this->AnyNormal = this->AnyNormal || other.AnyNormal;
+    this->AnyWeight = this->AnyWeight || other.AnyWeight;
+    return *this;
+  }
+};
 
 void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows)
 {
@@ -157,67 +188,9 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
     return;
   }
   const vtkIdType n = this->Source->GetNumberOfPoints();
-  const auto reserve = static_cast<std::size_t>(n);
-  this->Ids.reserve(reserve);
-  this->Positions.reserve(reserve);
-  this->Normals.reserve(reserve);
-  this->Weights.reserve(weights ? reserve : 0);
-  this->LocalFairing.reserve(fairing ? reserve : 0);
-  this->Bounds = { VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX,
-    -VTK_DOUBLE_MAX };
-  bool anyNormal = false, anyWeight = false;
-  for (vtkIdType id = 0; id < n; ++id)
-  {
-    std::array<double, 3> x, normal;
-    this->Source->GetPoint(id, x.data());
-    if (!isFinite(x.data()))
-    {
-      ++this->LeftOut.NonFinitePoints;
-      continue;
-    }
-    const double w = weights ? weights->GetComponent(id, 0) : 1.0;
-    const double local = fairing ? fairing->GetComponent(id, 0) : 1.0;
-    if (!(w >= 0 && std::isfinite(w) && local > 0 && std::isfinite(local)))
-    {
-      ++this->LeftOut.InvalidWeights;
-      continue;
-    }
-    anyWeight = anyWeight || w > 0;
-    if (weights)
-    {
-      this->Weights.push_back(w);
-    }
-    if (fairing)
-    {
-      this->LocalFairing.push_back(local);
-    }
-    normals->GetTuple(id, normal.data());
-    // Scaled first, so that neither tiny nor huge normals under- or overflow.
-    const double largest =
-      std::max({ std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2]) });
-    if (isFinite(normal.data()) && largest > 0)
-    {
-      for (double& v : normal)
-      {
-        v /= largest;
-      }
-      vtkMath::Normalize(normal.data());
-      anyNormal = true;
-    }
-    else
-    {
-      normal = { 0, 0, 0 };
-      ++this->LeftOut.InvalidNormals;
-    }
-    this->Ids.push_back(id);
-    this->Positions.push_back(x);
-    this->Normals.push_back(normal);
-    for (std::size_t a = 0; a < 3; ++a)
-    {
-      this->Bounds[2 * a] = std::min(this->Bounds[2 * a], x[a]);
-      this->Bounds[2 * a + 1] = std::max(this->Bounds[2 * a + 1], x[a]);
-    }
-  }
+  const Found found = this->takePoints(normals, weights, fairing);
+  this->LeftOut = found.LeftOut;
+  this->Bounds = found.Bounds;
   if (this->Ids.empty())
   {
     this->Refusal =
@@ -227,7 +200,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   {
     this->Refusal = "The input has one usable point; at least two are needed.";
   }
-  else if (!anyWeight)
+  else if (!found.AnyWeight)
   {
     this->Refusal = "All " + std::to_string(this->Ids.size()) + " row weights are zero.";
   }
@@ -235,7 +208,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   {
     this->Refusal = "All " + std::to_string(this->Ids.size()) + " points are equal.";
   }
-  else if (!anyNormal)
+  else if (!found.AnyNormal)
   {
     this->Refusal = "All " + std::to_string(this->Ids.size()) +
       " normals are zero or not finite. Compute normals with vtkPCANormalEstimation, in ParaView "
@@ -245,6 +218,80 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
   {
     this->gatherExtraRows(choose, extraRows);
   }
+}
+
+PointCloud::Found PointCloud::takePoints(
+  vtkDataArray* normals, vtkDataArray* weights, vtkDataArray* fairing)
+{
+  const vtkIdType n = this->Source->GetNumberOfPoints();
+  const auto size = static_cast<std::size_t>(n);
+  this->Ids.resize(size);
+  this->Positions.resize(size);
+  this->Normals.resize(size);
+  this->Weights.resize(weights ? size : 0);
+  this->LocalFairing.resize(fairing ? size : 0);
+  constexpr vtkIdType notTaken = -1;
+  // Each point has its place; those left out leave gaps.
+  auto found = parallelSum<Found>(n, resolveThreads(0),
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      Found part;
+      for (vtkIdType id = begin; id < end; ++id)
+      {
+        const auto k = static_cast<std::size_t>(id);
+        this->Ids[k] = notTaken;
+        std::array<double, 3>& x = this->Positions[k];
+        this->Source->GetPoint(id, x.data());
+        if (!isFinite(x.data()))
+        {
+          ++part.LeftOut.NonFinitePoints;
+          continue;
+        }
+        const double w = weights ? weights->GetComponent(id, 0) : 1.0;
+        const double local = fairing ? fairing->GetComponent(id, 0) : 1.0;
+        if (!(w >= 0 && std::isfinite(w) && local > 0 && std::isfinite(local)))
+        {
+          ++part.LeftOut.InvalidWeights;
+          continue;
+        }
+        part.AnyWeight = part.AnyWeight || w > 0;
+        if (weights)
+        {
+          this->Weights[k] = w;
+        }
+        if (fairing)
+        {
+          this->LocalFairing[k] = local;
+        }
+        std::array<double, 3>& normal = this->Normals[k];
+        normals->GetTuple(id, normal.data());
+        // Scaled first, so that neither tiny nor huge normals under- or overflow.
+        const double largest =
+          std::max({ std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2]) });
+        if (isFinite(normal.data()) && largest > 0)
+        {
+          for (double& v : normal)
+          {
+            v /= largest;
+          }
+          vtkMath::Normalize(normal.data());
+          part.AnyNormal = true;
+        }
+        else
+        {
+          normal = { 0, 0, 0 };
+          ++part.LeftOut.InvalidNormals;
+        }
+        this->Ids[k] = id;
+        part.include(x, x);
+      }
+      return part;
+    });
+  if (found.LeftOut.Total() > found.LeftOut.InvalidNormals)
+  {
+    this->keepIf([this](std::size_t k) { return this->Ids[k] != notTaken; });
+  }
+  return found;
 }
 
 void PointCloud::gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraRows)
@@ -280,6 +327,33 @@ void PointCloud::gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraR
   }
 }
 
+void PointCloud::keepIf(const std::function<bool(std::size_t)>& stays)
+{
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < this->Positions.size(); ++k)
+  {
+    if (stays(k))
+    {
+      this->Positions[kept] = this->Positions[k];
+      this->Normals[kept] = this->Normals[k];
+      this->Ids[kept] = this->Ids[k];
+      for (std::vector<double>* scalars : { &this->Weights, &this->LocalFairing })
+      {
+        if (!scalars->empty())
+        {
+          (*scalars)[kept] = (*scalars)[k];
+        }
+      }
+      ++kept;
+    }
+  }
+  this->Positions.resize(kept);
+  this->Normals.resize(kept);
+  this->Ids.resize(kept);
+  this->Weights.resize(this->Weights.empty() ? 0 : kept);
+  this->LocalFairing.resize(this->LocalFairing.empty() ? 0 : kept);
+}
+
 double PointCloud::longestSide() const
 {
   return std::max({ this->Bounds[1] - this->Bounds[0], this->Bounds[3] - this->Bounds[2],
@@ -294,20 +368,37 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> momentsOf(
   const PointCloud& cloud, std::size_t step, Eigen::Vector3d& centre)
 {
   const Vector3 first(cloud.Positions.front().data());
-  centre.setZero();
-  double count = 0;
-  for (std::size_t k = 0; k < cloud.Positions.size(); k += step)
-  {
-    centre += Vector3(cloud.Positions[k].data()) - first;
-    ++count;
-  }
-  centre = first + centre / count;
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < cloud.Positions.size(); k += step)
-  {
-    const Eigen::Vector3d d = (Vector3(cloud.Positions[k].data()) - centre) / cloud.longestSide();
-    scatter += d * d.transpose();
-  }
+  const auto stride = static_cast<std::int64_t>(step);
+  const std::int64_t n = (static_cast<std::int64_t>(cloud.Positions.size()) + stride - 1) / stride;
+  const auto at = [&](std::int64_t k)
+  { return Vector3(cloud.Positions[static_cast<std::size_t>(k * stride)].data()); };
+  centre = parallelSum<Eigen::Vector3d>(
+    n, resolveThreads(0),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        sum += at(k) - first;
+      }
+      return sum;
+    },
+    Eigen::Vector3d::Zero());
+  centre = first + centre / static_cast<double>(n);
+  const double side = cloud.longestSide();
+  const auto scatter = parallelSum<Eigen::Matrix3d>(
+    n, resolveThreads(0),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        const Eigen::Vector3d d = (at(k) - centre) / side;
+        sum += d * d.transpose();
+      }
+      return sum;
+    },
+    Eigen::Matrix3d::Zero());
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter);
 }
 }

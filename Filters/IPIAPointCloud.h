@@ -6,6 +6,7 @@
 #ifndef IPIAPointCloud_h
 #define IPIAPointCloud_h
 
+#include "Core/BulkVector.h"
 #include "IPIAFrame.h"
 
 #include "vtkPolyData.h"
@@ -21,6 +22,9 @@ class vtkDataObject;
 
 namespace ipia
 {
+/// Positions or normals in space.
+using SpacePoints = BulkVector<std::array<double, 3>>;
+
 /**
  * Points with unit normals in world coordinates, and what was found about them.
  */
@@ -53,12 +57,12 @@ public:
   /// The arrays of normals, weights and local fairing weights that were chosen in each block
   /// (nullptr: none), and that of the values of extra rows.
   std::vector<vtkDataArray*> ChosenArrays;
-  std::vector<vtkIdType> Ids;
-  std::vector<std::array<double, 3>> Positions;
-  std::vector<std::array<double, 3>> Normals; ///< unit length, or 0 where there is none
-  std::vector<double> Weights;                ///< empty: 1
-  std::vector<double> LocalFairing;           ///< empty: 1
-  std::vector<std::array<double, 3>> ExtraPositions;
+  BulkVector<vtkIdType> Ids;
+  SpacePoints Positions;
+  SpacePoints Normals;              ///< unit length, or 0 where there is none
+  std::vector<double> Weights;      ///< empty: 1
+  std::vector<double> LocalFairing; ///< empty: 1
+  SpacePoints ExtraPositions;
   std::vector<double> ExtraValues;
 
   /// What was left out, for one warning.
@@ -104,7 +108,13 @@ public:
    */
   std::vector<double> offsetDistances(double distance, double side) const;
 
+  /// Leaves out the other points, with all that belongs to them.
+  void keepIf(const std::function<bool(std::size_t)>& stays);
+
 private:
+  struct Found;
+
+  Found takePoints(vtkDataArray* normals, vtkDataArray* weights, vtkDataArray* fairing);
   void gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraRows);
 };
 }

@@ -759,9 +759,9 @@ bool vtkIPIAImplicitFitter::ContourBricks(int pointType,
   return ipia::contourBricks(*fit.Bricks, fit.Place, pointType, progress, surface, component);
 }
 
-const std::vector<std::array<double, 3>>& vtkIPIAImplicitFitter::FittedPositions() const
+const ipia::PointCloud& vtkIPIAImplicitFitter::FittedCloud() const
 {
-  return this->State->Current->Cloud.Positions;
+  return this->State->Current->Cloud;
 }
 
 void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)

@@ -141,6 +141,7 @@ class vtkPolyData;
 namespace ipia
 {
 struct FitParameters;
+class PointCloud;
 }
 
 class VTKFILTERSIPIA_EXPORT vtkIPIAImplicitFitter : public vtkImageAlgorithm
@@ -553,7 +554,7 @@ private:
   bool IsInBricks() const;
   bool ContourBricks(int pointType, const std::function<bool(double)>& progress,
     vtkPolyData* surface, std::vector<vtkIdType>& component) const;
-  const std::vector<std::array<double, 3>>& FittedPositions() const;
+  const ipia::PointCloud& FittedCloud() const;
 
   ipia::FitParameters Parameters() const;
 

@@ -3,6 +3,7 @@
 
 #include "IPIABrickContour.h"
 #include "IPIAComponents.h"
+#include "IPIAPointCloud.h"
 #include "IPIAProgress.h"
 #include "vtkIPIAImplicitFitter.h"
 #include "vtkIPIAImplicitFunction.h"
@@ -209,7 +210,7 @@ int vtkIPIASurfaceReconstruction::RequestData(
   if (done && this->ComponentFilter)
   {
     this->NumberOfComponentsLeftOut = ipia::leaveOutComponents(
-      surface, component, this->Fitter->FittedPositions(), ReachOfData * this->KnotSpacing());
+      surface, component, this->Fitter->FittedCloud().Positions, ReachOfData * this->KnotSpacing());
   }
   // Neither the input nor the samples are needed any more; the function and the figures stay.
   for (int port = 0; port < this->Fitter->GetNumberOfOutputPorts(); ++port)

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AutomaticLattice.h"
 
+#include "MortonOrder.h"
+#include "Parallel.h"
+
 #include <limits>
-#include <vector>
 
 namespace ipia
 {
@@ -14,50 +16,59 @@ constexpr int SpacingBits = 20;
 /// Points that an occupied cube must hold on average for their count to measure area (length).
 constexpr double PointsPerCube = 4;
 
-/// Interleaves the bits of one axis with gaps for the others.
-std::uint64_t spreadBits(std::uint64_t v, int dimension)
-{
-  std::uint64_t spread = 0;
-  for (int bit = 0; bit < SpacingBits; ++bit)
-  {
-    spread |= ((v >> bit) & 1u) << (bit * dimension);
-  }
-  return spread;
-}
 }
 
 template <int Dim>
-double pointSpacing(const Points<Dim>& positions, const Box<Dim>& box)
+double pointSpacing(const Points<Dim>& positions, const Box<Dim>& box, int threads)
 {
   const double longest = box.sides().maxCoeff();
   if (positions.cols() == 0 || !(longest > 0))
   {
     return 0;
   }
-  // Morton order: cubes of every size are runs of equal leading bits.
+  threads = resolveThreads(threads);
   const double scale = std::ldexp(1.0, SpacingBits) * (1 - 1e-12) / longest;
-  std::vector<std::uint64_t> keys(static_cast<std::size_t>(positions.cols()), 0);
-  for (std::int64_t k = 0; k < positions.cols(); ++k)
-  {
-    for (int a = 0; a < Dim; ++a)
+  BulkVector<std::uint64_t> keys(static_cast<std::size_t>(positions.cols()));
+  parallelChunks(positions.cols(), threads,
+    [&](std::int64_t begin, std::int64_t end)
     {
-      const double q = (positions(a, k) - box.Lower[a]) * scale;
-      keys[static_cast<std::size_t>(k)] |= spreadBits(static_cast<std::uint64_t>(q), Dim) << a;
-    }
-  }
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  const double distinct = static_cast<double>(keys.size());
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        Index<Dim> cube;
+        for (int a = 0; a < Dim; ++a)
+        {
+          cube[static_cast<std::size_t>(a)] =
+            static_cast<std::int64_t>((positions(a, k) - box.Lower[a]) * scale);
+        }
+        keys[static_cast<std::size_t>(k)] = mortonKey<Dim>(cube);
+      }
+    });
+  sortByKey(
+    keys, [](std::uint64_t key) { return key; }, threads);
 
+  // Neighbours in the order that are told apart by each bit, the highest that they differ in.
+  using Counts = Eigen::Matrix<std::int64_t, SpacingBits * Dim, 1>;
+  const auto apart = parallelSum<Counts>(
+    positions.cols() - 1, threads,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      Counts counts = Counts::Zero();
+      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+      {
+        const std::uint64_t differing = keys[k] ^ keys[k + 1];
+        if (differing != 0)
+        {
+          ++counts[63 - __builtin_clzll(differing)];
+        }
+      }
+      return counts;
+    },
+    Counts::Zero());
+  const auto distinct = static_cast<double>(1 + apart.sum());
   for (int bits = SpacingBits - 1; bits >= 0; --bits)
   {
-    const int shift = (SpacingBits - bits) * Dim;
-    std::int64_t occupied = 1;
-    for (std::size_t k = 1; k < keys.size(); ++k)
-    {
-      occupied += (keys[k] >> shift) != (keys[k - 1] >> shift);
-    }
-    const double perCube = distinct / static_cast<double>(occupied);
+    const auto occupied = static_cast<double>(1 + apart.tail(bits * Dim).sum());
+    const double perCube = distinct / occupied;
     if (perCube >= PointsPerCube || bits == 0)
     {
       return longest * std::ldexp(1.0, -bits) * std::pow(perCube, -1.0 / (Dim - 1));
@@ -120,8 +131,8 @@ PlacedLattice<Dim> latticeOn(const Box<Dim>& box, const Index<Dim>& size, double
   return placed;
 }
 
-template double pointSpacing<2>(const Points<2>&, const Box<2>&);
-template double pointSpacing<3>(const Points<3>&, const Box<3>&);
+template double pointSpacing<2>(const Points<2>&, const Box<2>&, int);
+template double pointSpacing<3>(const Points<3>&, const Box<3>&, int);
 template PlacedLattice<2> latticeAround<2>(const Box<2>&, double, const Index<2>&, double);
 template PlacedLattice<3> latticeAround<3>(const Box<3>&, double, const Index<3>&, double);
 template PlacedLattice<2> latticeOn<2>(const Box<2>&, const Index<2>&, double);

@@ -32,9 +32,10 @@ struct PlacedLattice
  * about the spacing of points that cover a surface (curve) evenly. 0 if all points are equal.
  *
  * @param positions  Dim x n, inside the box
+ * @param threads    0: OpenMP's choice; the result does not depend on it
  */
 template <int Dim>
-double pointSpacing(const Points<Dim>& positions, const Box<Dim>& box);
+double pointSpacing(const Points<Dim>& positions, const Box<Dim>& box, int threads = 0);
 
 /// Width of the margin that an automatic domain has at least, in knot spacings: room for the offset
 /// rows at 1.5 h and for the fall of f beyond them.

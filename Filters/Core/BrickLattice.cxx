@@ -110,24 +110,31 @@ void BrickLattice<Dim>::activateAll()
 template <int Dim>
 void BrickLattice<Dim>::activateAround(const Index<Dim>& cell)
 {
-  Index<Dim> low, high, first, last;
-  for (int a = 0; a < Dim; ++a)
+  // Six coefficients of an axis lie in no more than three bricks.
+  constexpr std::size_t most = 3;
+  Index<Dim> first, last;
+  std::array<std::array<std::uint64_t, most>, Dim> bits;
+  for (std::size_t a = 0; a < Dim; ++a)
   {
-    low[a] = std::max<std::int64_t>(cell[a] - 1, 0);
-    high[a] = std::min(cell[a] + Order, this->Grid.Size[a] - 1);
-    first[a] = low[a] / BrickWidth;
-    last[a] = high[a] / BrickWidth;
+    const std::int64_t low = std::max<std::int64_t>(cell[a] - 1, 0);
+    const std::int64_t high = std::min(cell[a] + Order, this->Grid.Size[a] - 1);
+    first[a] = low / BrickWidth;
+    last[a] = high / BrickWidth;
+    for (std::int64_t brick = first[a]; brick <= last[a]; ++brick)
+    {
+      const std::int64_t from = std::max<std::int64_t>(low - brick * BrickWidth, 0);
+      const std::int64_t to = std::min<std::int64_t>(high - brick * BrickWidth, BrickWidth - 1);
+      bits[a][static_cast<std::size_t>(brick - first[a])] =
+        SlabTable<Dim>::instance().Bits[a][from][to];
+    }
   }
   forBox<Dim>(first, last,
     [&](const Index<Dim>& brick)
     {
       std::uint64_t mask = ~std::uint64_t{ 0 };
-      for (int a = 0; a < Dim; ++a)
+      for (std::size_t a = 0; a < Dim; ++a)
       {
-        const std::int64_t from = std::max<std::int64_t>(low[a] - brick[a] * BrickWidth, 0);
-        const std::int64_t to =
-          std::min<std::int64_t>(high[a] - brick[a] * BrickWidth, BrickWidth - 1);
-        mask &= SlabTable<Dim>::instance().Bits[a][from][to];
+        mask &= bits[a][static_cast<std::size_t>(brick[a] - first[a])];
       }
       std::int32_t& id = this->Map[this->flatBrick(brick)];
       if (id == Absent)
@@ -201,7 +208,7 @@ void BrickLattice<Dim>::storeForRefinement(const BrickLattice& finer)
 }
 
 template <int Dim>
-void BrickLattice<Dim>::allocate()
+void BrickLattice<Dim>::allocate(int threads)
 {
   Index<Dim> end = this->BrickCount;
   for (auto& n : end)
@@ -231,20 +238,53 @@ void BrickLattice<Dim>::allocate()
     }
   }
   this->Map.swap(map);
-  this->Neighbours.resize(this->Position.size());
-  for (std::size_t b = 0; b < this->Position.size(); ++b)
+  this->findNeighbours(threads);
+  this->Coefficients.resize(this->Position.size() * BrickSize<Dim>);
+  parallelChunks(static_cast<std::int64_t>(this->Coefficients.size()), threads,
+    [this](std::int64_t from, std::int64_t to)
+    { std::fill(this->Coefficients.begin() + from, this->Coefficients.begin() + to, 0.F); });
+}
+
+template <int Dim>
+void BrickLattice<Dim>::findNeighbours(int threads)
+{
+  // In the map, from a brick that has all of them.
+  std::array<std::int64_t, NeighbourCount> step{};
+  std::array<Index<Dim>, NeighbourCount> offset;
+  for (std::size_t k = 0; k < step.size(); ++k)
   {
-    for (int k = 0; k < NeighbourCount; ++k)
+    std::int64_t stride = 1, rest = static_cast<std::int64_t>(k);
+    for (std::size_t a = 0; a < Dim; ++a, rest /= 3)
     {
-      Index<Dim> neighbour = this->Position[b];
-      for (int a = 0, rest = k; a < Dim; ++a, rest /= 3)
-      {
-        neighbour[a] += rest % 3 - 1;
-      }
-      this->Neighbours[b][static_cast<std::size_t>(k)] = this->brickAt(neighbour);
+      offset[k][a] = rest % 3 - 1;
+      step[k] += offset[k][a] * stride;
+      stride *= this->BrickCount[a];
     }
   }
-  this->Coefficients.assign(this->Position.size() * BrickSize<Dim>, 0.0F);
+  this->Neighbours.resize(this->Position.size());
+  parallelChunks(this->numberOfBricks(), threads,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b)
+      {
+        const Index<Dim>& brick = this->Position[b];
+        bool inside = true;
+        for (std::size_t a = 0; a < Dim; ++a)
+        {
+          inside = inside && brick[a] > 0 && brick[a] + 1 < this->BrickCount[a];
+        }
+        const std::int32_t* const at = this->Map.data() + this->flatBrick(brick);
+        for (std::size_t k = 0; k < step.size(); ++k)
+        {
+          Index<Dim> neighbour = brick;
+          for (std::size_t a = 0; a < Dim; ++a)
+          {
+            neighbour[a] += offset[k][a];
+          }
+          this->Neighbours[b][k] = inside ? at[step[k]] : this->brickAt(neighbour);
+        }
+      }
+    });
 }
 
 template <int Dim>
@@ -281,23 +321,46 @@ void BrickLattice<Dim>::refineFrom(const BrickLattice& coarser, int threads)
   for (std::int32_t b = 0; b < this->numberOfBricks(); ++b)
   {
     const Index<Dim>& brick = this->position(b);
-    float read[BrickSize<Dim>];
-    for (int k = 0; k < BrickSize<Dim>; ++k)
+    // What it reads lies in no more than two bricks an axis.
+    Index<Dim> low{};
+    std::array<std::array<int, BrickWidth>, Dim> upper, inside;
+    for (std::size_t a = 0; a < Dim; ++a)
     {
-      Index<Dim> at;
-      int inside = 0;
-      for (int a = 0; a < Dim; ++a)
+      for (std::size_t i = 0; i < BrickWidth; ++i)
       {
         // Fine coefficients beyond the lattice may ask for coarse ones beyond it; they do not
         // count.
         const std::int64_t c =
-          std::min(2 * brick[a] + (k >> (2 * a) & 3), coarser.Grid.Size[a] - 1);
-        at[a] = c / BrickWidth;
-        inside |= static_cast<int>(c % BrickWidth) << (2 * a);
+          std::min(2 * brick[a] + static_cast<std::int64_t>(i), coarser.Grid.Size[a] - 1);
+        low[a] = i == 0 ? c / BrickWidth : low[a];
+        upper[a][i] = static_cast<int>(c / BrickWidth - low[a]) << a;
+        inside[a][i] = static_cast<int>(c % BrickWidth) << (2 * a);
+      }
+    }
+    std::array<const float*, 1 << Dim> from;
+    for (std::size_t child = 0; child < from.size(); ++child)
+    {
+      Index<Dim> at = low;
+      for (std::size_t a = 0; a < Dim; ++a)
+      {
+        at[a] += static_cast<std::int64_t>(child >> a & 1);
       }
       const std::int32_t id = coarser.brickAt(at);
-      read[k] = coarser.Coefficients[static_cast<std::size_t>(id) * BrickSize<Dim> +
-        static_cast<std::size_t>(inside)];
+      from[child] = id == Absent
+        ? nullptr
+        : coarser.Coefficients.data() + static_cast<std::int64_t>(id) * BrickSize<Dim>;
+    }
+    float read[BrickSize<Dim>];
+    for (int k = 0; k < BrickSize<Dim>; ++k)
+    {
+      int child = 0, at = 0;
+      for (std::size_t a = 0; a < Dim; ++a)
+      {
+        const auto i = static_cast<std::size_t>(k >> (2 * a) & 3);
+        child |= upper[a][i];
+        at |= inside[a][i];
+      }
+      read[k] = from[static_cast<std::size_t>(child)][at];
     }
     float first[BrickSize<Dim>];
     float* out = this->Coefficients.data() + static_cast<std::int64_t>(b) * BrickSize<Dim>;

@@ -12,6 +12,7 @@
 #ifndef ipia_BrickLattice_h
 #define ipia_BrickLattice_h
 
+#include "BulkVector.h"
 #include "Lattice.h"
 
 #include <vector>
@@ -28,6 +29,9 @@ constexpr int BrickSize = Dim == 2 ? 16 : 64;
 constexpr int WindowWidth = 8;
 template <int Dim>
 constexpr int WindowSize = Dim == 2 ? 64 : 512;
+
+/// BrickSize values per brick, or some per row.
+using BrickValues = BulkVector<float>;
 
 template <int Dim>
 class BrickLattice
@@ -55,8 +59,8 @@ public:
   void storeForRefinement(const BrickLattice& finer);
 
   /// Ends the marking: bricks get their final numbers, active ones first, both in lexicographic
-  /// order.
-  void allocate();
+  /// order. Coefficients are 0.
+  void allocate(int threads = 1);
 
   std::int32_t numberOfActiveBricks() const { return this->ActiveCount; }
   std::int32_t numberOfBricks() const { return static_cast<std::int32_t>(this->Position.size()); }
@@ -91,8 +95,8 @@ public:
   }
 
   /// All stored coefficients, brick by brick.
-  std::vector<float>& coefficients() { return this->Coefficients; }
-  const std::vector<float>& coefficients() const { return this->Coefficients; }
+  BrickValues& coefficients() { return this->Coefficients; }
+  const BrickValues& coefficients() const { return this->Coefficients; }
 
   /// Fills all stored bricks with the exact knot refinement of the coarser lattice.
   void refineFrom(const BrickLattice& coarser, int threads);
@@ -101,6 +105,8 @@ public:
   bool covers(const Index<Dim>& cell) const;
 
 private:
+  void findNeighbours(int threads);
+
   std::size_t flatBrick(const Index<Dim>& brick) const
   {
     std::int64_t index = 0;
@@ -117,8 +123,8 @@ private:
   std::vector<std::uint64_t> Marks; // while marking: the mask of each brick that is stored
   std::vector<Index<Dim>> Position;
   std::vector<std::uint64_t> Mask;
-  std::vector<std::array<std::int32_t, NeighbourCount>> Neighbours;
-  std::vector<float> Coefficients;
+  BulkVector<std::array<std::int32_t, NeighbourCount>> Neighbours;
+  BrickValues Coefficients;
   std::int32_t ActiveCount = 0;
 };
 }

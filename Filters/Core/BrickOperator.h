@@ -39,33 +39,34 @@ public:
     const FairingWeights& fairing, int threads);
 
   /// @a gradient = minus half the gradient of E at the lattice's coefficients.
-  void residual(std::vector<float>& gradient) const;
+  void residual(BrickValues& gradient) const;
 
   /// @a product = A p, the system matrix times a vector that is 0 outside the active bricks.
-  void product(const std::vector<float>& p, std::vector<float>& product) const;
+  void product(const BrickValues& p, BrickValues& product) const;
 
   /// @a diagonal of A.
-  void diagonal(std::vector<float>& diagonal) const;
+  void diagonal(BrickValues& diagonal) const;
 
   /// sum_k w_k (f - v)^2 + g_k sum_a s_a^2 (f_a - slope)^2 at the lattice's coefficients.
   double energy() const;
 
   /// @a sums_i = sum_k w_k B_i(x_k).
-  void density(std::vector<float>& sums) const;
+  void density(BrickValues& sums) const;
 
   /// The spline with the given coefficients (all stored, or the active bricks') at the rows:
   /// values[row.Source].
-  void evaluate(const std::vector<float>& coefficients, std::vector<float>& values) const;
+  void evaluate(const BrickValues& coefficients, BrickValues& values) const;
 
   /// Value and derivatives by the local coordinates at the rows: (1 + Dim) values per row.Source.
-  void evaluateWithGradient(
-    const std::vector<float>& coefficients, std::vector<float>& values) const;
+  void evaluateWithGradient(const BrickValues& coefficients, BrickValues& values) const;
 
 private:
   template <int Kind>
   void sweepRows(const float* input, std::int32_t inputBricks, float* output) const;
   void applyFairing(
-    const float* input, std::int32_t inputBricks, float sign, std::vector<float>& output) const;
+    const float* input, std::int32_t inputBricks, float sign, BrickValues& output) const;
+
+  void fill(BrickValues& values, float value) const;
 
   const BrickLattice<Dim>& Bricks;
   const HermiteRows<Dim>& Rows;

@@ -39,7 +39,7 @@ struct HermiteRows
     std::int64_t Begin, End;
   };
 
-  std::vector<HermiteRow<Dim>> Rows;
+  BulkVector<HermiteRow<Dim>> Rows;
   std::vector<Brick> Bricks; ///< by colour
   std::array<std::size_t, NumberOfColours + 1> ColourBegin{};
 };

@@ -26,65 +26,84 @@ constexpr int ValidationIterations = 8, MostValidations = 5;
 constexpr double FirstSmoothing = 2.4, ValidationStep = 1.41421356, ValidationSlack = 1.01;
 /// Squared errors of predicted normals are cut here, so that outliers do not decide.
 constexpr double MostNormalError = 2;
-/// Samples that f is evaluated at in one go: a bound on memory.
-constexpr std::size_t SamplesAtATime = 1 << 20;
+/// Samples that f is evaluated at in one go: what is known of them stays in the cache.
+constexpr std::int64_t SamplesAtATime = 2048;
 
-/// Calls action(sample, f, gradient) for the given samples, by a level that covers them.
-template <int Dim, typename Action>
-void forValues(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
-  const Samples<Dim>& samples, int threads, const Action& action)
+/// Sum of term(sample, f, gradient) over sorted samples, by a level that covers them.
+template <typename Sum, int Dim, typename Term>
+Sum sumOverValues(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Samples<Dim>& samples, int threads, const Term& term)
 {
-  for (std::size_t begin = 0; begin < samples.size(); begin += SamplesAtATime)
-  {
-    const auto first = samples.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = samples.begin() +
-      static_cast<std::ptrdiff_t>(std::min(begin + SamplesAtATime, samples.size()));
-    const std::vector<float> values =
-      evaluateLevel(level, bricks, Samples<Dim>(first, last), threads);
-    for (auto s = first; s != last; ++s)
+  return parallelSum<Sum>(static_cast<std::int64_t>(samples.size()), threads,
+    [&](std::int64_t begin, std::int64_t end)
     {
-      const float* v = &values[static_cast<std::size_t>(s - first) * (1 + Dim)];
-      action(*s, static_cast<double>(v[0]),
-        Point<Dim>(Eigen::Map<const Eigen::Matrix<float, Dim, 1>>(v + 1).template cast<double>()));
-    }
-  }
+      Sum sum{};
+      BrickValues values;
+      for (std::int64_t first = begin; first < end; first += SamplesAtATime)
+      {
+        const Sample<Dim>* const from = samples.data() + first;
+        const Sample<Dim>* const to = samples.data() + std::min(first + SamplesAtATime, end);
+        evaluateLevel(level, bricks, from, to, values);
+        const float* v = values.data();
+        for (const Sample<Dim>* s = from; s != to; ++s, v += 1 + Dim)
+        {
+          sum += term(*s, static_cast<double>(v[0]),
+            Point<Dim>(
+              Eigen::Map<const Eigen::Matrix<float, Dim, 1>>(v + 1).template cast<double>()));
+        }
+      }
+      return sum;
+    });
 }
 
-/// The root mean square distance of the points from the zero set.
+/// How far the points miss the zero set.
+struct Misses
+{
+  double Distances = 0; ///< squares, of those with normals
+  double Oriented = 0;  ///< number of these
+  double Values = 0;    ///< squares of f, but for extra rows
+  double Points = 0;    ///< number of these
+  double Largest = 0;   ///< |f| of these
+
+  Misses& operator+=(const Misses& other)
+  {
+    this->Distances += other.Distances;
+    this->Oriented += other.Oriented;
+    this->Values += other.Values;
+    this->Points += other.Points;
+    this->Largest = std::max(this->Largest, other.Largest);
+    return *this;
+  }
+
+  /// The root mean square distance.
+  double noise() const
+  {
+    return this->Oriented > 0 ? std::sqrt(this->Distances / this->Oriented) : 0;
+  }
+};
+
 template <int Dim>
-double noiseOf(
+Misses missesOf(
   const Level<Dim>& level, const BrickLattice<Dim>& bricks, const Samples<Dim>& points, int threads)
 {
-  double sum = 0, count = 0;
-  forValues(level, bricks, points, threads,
-    [&](const Sample<Dim>& sample, double f, const Point<Dim>& gradient)
+  return sumOverValues<Misses>(level, bricks, points, threads,
+    [](const Sample<Dim>& sample, double f, const Point<Dim>& gradient)
     {
+      Misses one;
       if (sample.HasNormal)
       {
         const double distance = f / std::max(gradient.norm(), LeastSlope);
-        sum += distance * distance;
-        ++count;
+        one.Distances = distance * distance;
+        one.Oriented = 1;
       }
-    });
-  return count > 0 ? std::sqrt(sum / count) : 0;
-}
-
-template <int Dim>
-void reportErrors(
-  const Level<Dim>& level, const BrickLattice<Dim>& bricks, int threads, LevelReport& report)
-{
-  double sum = 0, count = 0;
-  forValues(level, bricks, level.points(), threads,
-    [&](const Sample<Dim>& sample, double f, const Point<Dim>&)
-    {
       if (!sample.IsExtra)
       {
-        sum += f * f;
-        ++count;
-        report.MaximumError = std::max(report.MaximumError, std::abs(f));
+        one.Values = f * f;
+        one.Points = 1;
+        one.Largest = std::abs(f);
       }
+      return one;
     });
-  report.AverageError = count > 0 ? sum / count : 0;
 }
 
 /// The smoothing length that predicts the normals of held-out points best.
@@ -122,14 +141,14 @@ double validatedSmoothing(const std::vector<Level<Dim>>& levels,
     {
       solveLevel(training, scratch, l, length, quick, threads);
     }
-    double sum = 0;
-    forValues(training[last], scratch[last], heldOut, threads,
-      [&](const Sample<Dim>& sample, double, const Point<Dim>& gradient)
-      { sum += std::min((gradient - sample.Normal).squaredNorm(), MostNormalError); });
+    const auto sum = sumOverValues<double>(training[last], scratch[last], heldOut, threads,
+      [](const Sample<Dim>& sample, double, const Point<Dim>& gradient)
+      { return std::min((gradient - sample.Normal).squaredNorm(), MostNormalError); });
     return std::sqrt(sum / static_cast<double>(heldOut.size()));
   };
   const double spacing = levels[last].Grid.Spacing.mean() *
-    std::pow(static_cast<double>(levels.back().points().size()) / occupiedCells(levels[last]),
+    std::pow(
+      static_cast<double>(levels.back().points().size()) / occupiedCells(levels[last], threads),
       -1. / (Dim - 1));
   double first = FirstSmoothing * spacing;
   std::deque<double> errors{ errorOf(first), errorOf(first * ValidationStep) };
@@ -173,7 +192,7 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
   Samples<Dim> samples = sortedSamples(lattice, input, threads);
   input = {};
   const std::vector<Level<Dim>> levels = makeLevels(lattice, std::move(samples), options, threads);
-  std::vector<BrickLattice<Dim>> bricks = makeBricks(levels);
+  std::vector<BrickLattice<Dim>> bricks = makeBricks(levels, threads);
 
   const auto solveAndReport = [&](std::size_t l)
   {
@@ -189,35 +208,36 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
   };
 
   // The finest level that the points alone determine tells how noisy they are.
-  std::size_t gate = levels.size(), next = 0;
-  const auto n = static_cast<double>(levels.back().points().size());
-  for (std::size_t l = 0; l < levels.size() && options.SmoothingLength < 0; ++l)
+  const Samples<Dim>& points = levels.back().points();
+  const auto n = static_cast<double>(points.size());
+  std::size_t gate = options.SmoothingLength < 0 ? levels.size() : 0; // counted from 1, 0: none
+  while (gate > 0 && n < PointsPerDeterminedCell * occupiedCells(levels[gate - 1], threads))
   {
-    if (n >= PointsPerDeterminedCell * occupiedCells(levels[l]))
-    {
-      gate = l;
-    }
+    --gate;
   }
+  std::size_t next = 0;
+  Misses misses;
   result.SmoothingLength = std::max(options.SmoothingLength, 0.0);
-  if (gate < levels.size())
+  if (gate > 0)
   {
-    double missBefore = 0;
-    for (; next <= gate; ++next)
+    for (; next < gate; ++next)
     {
       if (!solveAndReport(next))
       {
         return result;
       }
-      if (next + 1 >= gate)
-      {
-        missBefore = result.Noise;
-        result.Noise = noiseOf(levels[next], bricks[next], levels.back().points(), threads);
-      }
     }
-    if (result.Noise > NoiseGate * levels[gate].Grid.Spacing.mean() &&
-      result.Noise > NoiseFall * missBefore)
+    const std::size_t last = gate - 1;
+    misses = missesOf(levels[last], bricks[last], points, threads);
+    result.Noise = misses.noise();
+    if (result.Noise > NoiseGate * levels[last].Grid.Spacing.mean())
     {
-      result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
+      const double before =
+        last > 0 ? missesOf(levels[last - 1], bricks[last - 1], points, threads).noise() : 0;
+      if (result.Noise > NoiseFall * before)
+      {
+        result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
+      }
     }
     if (result.SmoothingLength > 0)
     {
@@ -226,14 +246,20 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
       next = 0;
     }
   }
-  for (; next < levels.size(); ++next)
+  if (next < levels.size())
   {
-    if (!solveAndReport(next))
+    for (; next < levels.size(); ++next)
     {
-      return result;
+      if (!solveAndReport(next))
+      {
+        return result;
+      }
     }
+    misses = missesOf(levels.back(), bricks.back(), points, threads);
   }
-  reportErrors(levels.back(), bricks.back(), threads, result.Reports.back());
+  LevelReport& finest = result.Reports.back();
+  finest.AverageError = misses.Points > 0 ? misses.Values / misses.Points : 0;
+  finest.MaximumError = misses.Largest;
   result.Function = std::make_shared<const BrickSpline<Dim>>(std::move(bricks));
   return result;
 }

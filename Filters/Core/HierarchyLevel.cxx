@@ -5,6 +5,8 @@
 #include "Parallel.h"
 
 #include <chrono>
+#include <cstring>
+#include <functional>
 
 namespace ipia
 {
@@ -19,42 +21,46 @@ constexpr std::int64_t CoarsestCells = 16;
 constexpr int CoarsestIterationsPerCell = 4;
 /// sum_i B_i(x)^2 on average: the density that one row per occupied cell of a surface has.
 constexpr double UnitDensity = 151. / 315;
+/// With fewer rows one thread is as fast as several that wait for each other ten times an
+/// iteration.
+constexpr std::size_t LeastRowsForThreads = 1 << 16;
 /// The scale of residuals is at least this many knot spacings.
 constexpr double LeastScale = 0.1;
 /// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
 constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
 
 template <int Dim>
-HermiteRows<Dim> makeRows(
-  const Level<Dim>& level, const BrickLattice<Dim>& bricks, double gradient, int threads)
+HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Sample<Dim>* samples, std::int64_t count, double gradient, int threads)
 {
   HermiteRows<Dim> rows;
-  rows.Rows.resize(level.Data.size());
-  std::vector<std::int32_t> brickOf(rows.Rows.size());
-  parallelChunks(static_cast<std::int64_t>(rows.Rows.size()), threads,
+  rows.Rows.resize(static_cast<std::size_t>(count));
+  BulkVector<std::int32_t> brickOf(rows.Rows.size());
+  const Point<Dim> spacing = level.Grid.Spacing;
+  parallelChunks(count, threads,
     [&](std::int64_t begin, std::int64_t end)
     {
-      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+      for (std::int64_t k = begin; k < end; ++k)
       {
-        const Sample<Dim>& sample = level.Data[k];
-        const Index<Dim> cell = level.cellOf(sample);
+        const Sample<Dim>& sample = samples[k];
+        const Point<Dim> position = level.positionOf(sample);
+        const Index<Dim> cell = level.cellAt(position);
         Index<Dim> brick;
-        HermiteRow<Dim>& row = rows.Rows[k];
+        HermiteRow<Dim>& row = rows.Rows[static_cast<std::size_t>(k)];
         row.Cell = 0;
         for (int a = 0; a < Dim; ++a)
         {
           brick[a] = cell[a] / BrickWidth;
           row.Cell |= static_cast<std::int32_t>(cell[a] % BrickWidth) << (2 * a);
-          row.T[a] =
-            static_cast<float>(level.cells(sample.Position[a]) - static_cast<double>(cell[a]));
-          row.Slope[a] = static_cast<float>(level.Grid.Spacing[a] * sample.Normal[a]);
+          row.T[a] = static_cast<float>(position[a] - static_cast<double>(cell[a]));
+          row.Slope[a] = static_cast<float>(spacing[a] * sample.Normal[a]);
         }
         row.Value = sample.Value;
         row.Weight = sample.Weight;
         row.GradientWeight =
           sample.HasNormal ? static_cast<float>(sample.Weight * gradient * gradient) : 0.F;
         row.Source = static_cast<std::int32_t>(k);
-        brickOf[k] = bricks.brickAt(brick);
+        brickOf[static_cast<std::size_t>(k)] = bricks.brickAt(brick);
       }
     });
   std::array<std::vector<typename HermiteRows<Dim>::Brick>, HermiteRows<Dim>::NumberOfColours>
@@ -83,11 +89,48 @@ HermiteRows<Dim> makeRows(
   return rows;
 }
 
-double median(std::vector<float> values)
+/// The value that size / 2 others precede, of values >= 0.
+float median(const BulkVector<float>& values, int threads)
 {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  // The bits of positive floats are ordered as the floats are: half of them at a time, by counting.
+  constexpr std::size_t halves = 1 << 16;
+  const auto n = static_cast<std::int64_t>(values.size());
+  const auto bitsOf = [&values](std::int64_t k)
+  {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &values[static_cast<std::size_t>(k)], sizeof(bits));
+    return bits;
+  };
+  std::int64_t rank = n / 2;
+  std::uint32_t found = 0;
+  for (const int shift : { 16, 0 })
+  {
+    std::vector<std::int64_t> count(halves, 0);
+#pragma omp parallel num_threads(threads)
+    {
+      std::vector<std::int64_t> own(halves, 0);
+#pragma omp for schedule(static)
+      for (std::int64_t k = 0; k < n; ++k)
+      {
+        const std::uint32_t bits = bitsOf(k);
+        if (shift == 16 || bits >> 16 == found >> 16)
+        {
+          ++own[bits >> shift & (halves - 1)];
+        }
+      }
+#pragma omp critical
+      std::transform(own.begin(), own.end(), count.begin(), count.begin(), std::plus<>());
+    }
+    std::uint32_t half = 0;
+    for (; half + 1 < halves && rank >= count[half]; ++half)
+    {
+      rank -= count[half];
+    }
+    found |= half << shift;
+  }
+  float value = 0;
+  std::memcpy(&value, &found, sizeof(value));
+  return value;
 }
 
 /// Scales the weights so that the rows of an occupied cell weigh about 1 in all, and takes weight
@@ -98,7 +141,7 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
   bool predicted, const HierarchicalOptions& options, int threads)
 {
   const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
-  std::vector<float> sums, density;
+  BrickValues sums, density;
   collocation.density(sums);
   collocation.evaluate(sums, density);
   const auto n = static_cast<std::int64_t>(rows.Rows.size());
@@ -124,7 +167,7 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
 
   // f and its gradient, in knot spacings, by the coarser level.
   constexpr std::size_t stride = 1 + Dim;
-  std::vector<float> prediction;
+  BrickValues prediction;
   const double spacing = level.Grid.Spacing.mean();
   double scale = 0;
   if (predicted)
@@ -133,14 +176,18 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
   }
   if (predicted && options.RobustFactor > 0)
   {
-    std::vector<float> misses(rows.Rows.size());
-    for (const HermiteRow<Dim>& row : rows.Rows)
-    {
-      const auto k = static_cast<std::size_t>(row.Source);
-      misses[k] = std::abs(prediction[k * stride] - row.Value);
-    }
-    scale =
-      options.RobustFactor * std::max(1.4826 * median(std::move(misses)), LeastScale * spacing);
+    BulkVector<float> misses(rows.Rows.size());
+    parallelChunks(n, threads,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+        {
+          const HermiteRow<Dim>& row = rows.Rows[i];
+          const auto k = static_cast<std::size_t>(row.Source);
+          misses[k] = std::abs(prediction[k * stride] - row.Value);
+        }
+      });
+    scale = options.RobustFactor * std::max(1.4826 * median(misses, threads), LeastScale * spacing);
   }
   // On coarse levels every part is thin, and the finer ones need what these know of it.
   const bool mayBeThin = predicted && longestAxis(level.Grid) > 2 * options.DenseCells;
@@ -168,25 +215,44 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
     { std::for_each(rows.Rows.begin() + begin, rows.Rows.begin() + end, weigh); });
 }
 
+/// Marks what a level solves for: the coefficients around the cells with data.
+template <int Dim>
+void activateBand(const Level<Dim>& level, BrickLattice<Dim>& bricks)
+{
+  Index<Dim> last;
+  last.fill(-1);
+  for (const Sample<Dim>& sample : level.Data)
+  {
+    const Index<Dim> cell = level.cellOf(sample);
+    if (cell != last)
+    {
+      bricks.activateAround(cell);
+      last = cell;
+    }
+  }
+}
+
 /// Conjugate gradients with the diagonal as preconditioner, on the active coefficients.
 template <int Dim>
 void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
   double tolerance, StoppingRule rule, int threads, const ProgressCallback& progress,
   LevelReport& report)
 {
-  std::vector<float> r, p, q, inverse;
+  BrickValues r, p, q, inverse;
   system.diagonal(inverse);
   system.residual(r);
   const auto n = static_cast<std::int64_t>(r.size());
-  for (std::int32_t b = 0; b < bricks.numberOfActiveBricks(); ++b)
-  {
-    const std::uint64_t mask = bricks.activeMask(b);
-    float* d = inverse.data() + static_cast<std::int64_t>(b) * BrickSize<Dim>;
-    for (int k = 0; k < BrickSize<Dim>; ++k)
+  parallelChunks(n, threads,
+    [&](std::int64_t begin, std::int64_t end)
     {
-      d[k] = (mask >> k & 1) != 0 && d[k] > 0 ? 1 / d[k] : 0.F;
-    }
-  }
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        const auto b = static_cast<std::int32_t>(i / BrickSize<Dim>);
+        const bool active = (bricks.activeMask(b) >> (i % BrickSize<Dim>)&1) != 0;
+        float& d = inverse[static_cast<std::size_t>(i)];
+        d = active && d > 0 ? 1 / d : 0.F;
+      }
+    });
   p.resize(r.size());
   double rz = parallelSum(n, threads,
     [&](std::int64_t begin, std::int64_t end)
@@ -275,18 +341,27 @@ double trustInSlope(const HermiteRow<Dim>& row, const float* predictedGradient)
 }
 
 template <int Dim>
-double occupiedCells(const Level<Dim>& level)
+double occupiedCells(const Level<Dim>& level, int threads)
 {
-  double count = 0;
-  Index<Dim> last;
-  last.fill(-1);
-  for (const Sample<Dim>& sample : level.Data)
-  {
-    const Index<Dim> cell = level.cellOf(sample);
-    count += cell != last;
-    last = cell;
-  }
-  return count;
+  // In the order of the samples those of a cell are together.
+  return parallelSum(static_cast<std::int64_t>(level.Data.size()), threads,
+    [&level](std::int64_t begin, std::int64_t end)
+    {
+      double count = 0;
+      Index<Dim> last;
+      last.fill(-1);
+      if (begin > 0)
+      {
+        last = level.cellOf(level.Data[static_cast<std::size_t>(begin - 1)]);
+      }
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        const Index<Dim> cell = level.cellOf(level.Data[static_cast<std::size_t>(k)]);
+        count += cell != last;
+        last = cell;
+      }
+      return count;
+    });
 }
 
 template <int Dim>
@@ -341,39 +416,35 @@ std::vector<Level<Dim>> makeLevels(
 }
 
 template <int Dim>
-std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels)
+std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels, int threads)
 {
   std::vector<BrickLattice<Dim>> bricks;
   for (const Level<Dim>& level : levels)
   {
     bricks.emplace_back(level.Grid);
   }
-  for (std::size_t l = levels.size(); l-- > 0;)
+  // The bands do not know of each other yet.
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::size_t k = 0; k < levels.size(); ++k)
   {
+    const std::size_t l = levels.size() - 1 - k; // the finest takes longest
     if (levels[l].Dense)
     {
       bricks[l].activateAll();
     }
     else
     {
-      Index<Dim> last;
-      last.fill(-1);
-      for (const Sample<Dim>& sample : levels[l].Data)
-      {
-        const Index<Dim> cell = levels[l].cellOf(sample);
-        if (cell != last)
-        {
-          bricks[l].activateAround(cell);
-          last = cell;
-        }
-      }
+      activateBand(levels[l], bricks[l]);
       bricks[l].storeAroundActive();
     }
+  }
+  for (std::size_t l = levels.size(); l-- > 0;)
+  {
     if (l + 1 < levels.size() && !levels[l].Dense)
     {
       bricks[l].storeForRefinement(bricks[l + 1]);
     }
-    bricks[l].allocate();
+    bricks[l].allocate(threads);
   }
   return bricks;
 }
@@ -385,6 +456,7 @@ LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
 {
   const auto start = std::chrono::steady_clock::now();
   const Level<Dim>& level = levels[l];
+  threads = level.Data.size() < LeastRowsForThreads ? 1 : threads;
   const bool finest = l + 1 == levels.size();
   if (l > 0)
   {
@@ -398,8 +470,9 @@ LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
   const double gradient = level.Dense ? options.DenseGradient
     : finest                          ? options.FinestGradient
                                       : options.BandGradient;
-  HermiteRows<Dim> rows = makeRows(
-    level, bricks[l], std::max(gradient, std::min(relative, MostSmoothingGradient)), threads);
+  HermiteRows<Dim> rows =
+    makeRows(level, bricks[l], level.Data.data(), static_cast<std::int64_t>(level.Data.size()),
+      std::max(gradient, std::min(relative, MostSmoothingGradient)), threads);
   weighRows(level, bricks[l], rows, l > 0, options, threads);
   FairingWeights fairing;
   fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : options.BandMembrane);
@@ -438,13 +511,11 @@ LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
 }
 
 template <int Dim>
-std::vector<float> evaluateLevel(
-  const Level<Dim>& level, const BrickLattice<Dim>& bricks, Samples<Dim> samples, int threads)
+void evaluateLevel(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Sample<Dim>* begin, const Sample<Dim>* end, BrickValues& values)
 {
-  const Level<Dim> atSamples{ level.Coarsening, level.Grid, level.Dense, std::move(samples), {} };
-  const HermiteRows<Dim> rows = makeRows(atSamples, bricks, 0, threads);
-  std::vector<float> values;
-  BrickOperator<Dim>(bricks, rows, {}, threads).evaluateWithGradient(bricks.coefficients(), values);
+  const HermiteRows<Dim> rows = makeRows(level, bricks, begin, end - begin, 0, 1);
+  BrickOperator<Dim>(bricks, rows, {}, 1).evaluateWithGradient(bricks.coefficients(), values);
   for (std::size_t k = 0; k < rows.Rows.size(); ++k)
   {
     for (int a = 0; a < Dim; ++a)
@@ -453,27 +524,26 @@ std::vector<float> evaluateLevel(
         static_cast<float>(level.Grid.Spacing[a]);
     }
   }
-  return values;
 }
 
 template std::vector<Level<2>> makeLevels<2>(
   const Lattice<2>&, Samples<2>, const HierarchicalOptions&, int);
 template Samples<2> coarserData<2>(const Samples<2>&, int, int);
-template std::vector<BrickLattice<2>> makeBricks<2>(const std::vector<Level<2>>&);
+template std::vector<BrickLattice<2>> makeBricks<2>(const std::vector<Level<2>>&, int);
 template double trustInSlope<2>(const HermiteRow<2>&, const float*);
-template double occupiedCells<2>(const Level<2>&);
+template double occupiedCells<2>(const Level<2>&, int);
 template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&,
   std::size_t, double, const HierarchicalOptions&, int, const ProgressCallback&);
-template std::vector<float> evaluateLevel<2>(
-  const Level<2>&, const BrickLattice<2>&, Samples<2>, int);
+template void evaluateLevel<2>(
+  const Level<2>&, const BrickLattice<2>&, const Sample<2>*, const Sample<2>*, BrickValues&);
 template std::vector<Level<3>> makeLevels<3>(
   const Lattice<3>&, Samples<3>, const HierarchicalOptions&, int);
 template Samples<3> coarserData<3>(const Samples<3>&, int, int);
-template std::vector<BrickLattice<3>> makeBricks<3>(const std::vector<Level<3>>&);
+template std::vector<BrickLattice<3>> makeBricks<3>(const std::vector<Level<3>>&, int);
 template double trustInSlope<3>(const HermiteRow<3>&, const float*);
-template double occupiedCells<3>(const Level<3>&);
+template double occupiedCells<3>(const Level<3>&, int);
 template LevelReport solveLevel<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&,
   std::size_t, double, const HierarchicalOptions&, int, const ProgressCallback&);
-template std::vector<float> evaluateLevel<3>(
-  const Level<3>&, const BrickLattice<3>&, Samples<3>, int);
+template void evaluateLevel<3>(
+  const Level<3>&, const BrickLattice<3>&, const Sample<3>*, const Sample<3>*, BrickValues&);
 }

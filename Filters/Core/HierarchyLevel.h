@@ -76,18 +76,26 @@ struct Level
     return this->Unclustered.empty() ? this->Data : this->Unclustered;
   }
 
-  /// A length in cells of this level, from cells of the finest.
-  double cells(double length) const
+  /// A position in cells of this level.
+  Point<Dim> positionOf(const Sample<Dim>& sample) const
   {
-    return length / static_cast<double>(std::int64_t{ 1 } << this->Coarsening);
+    // By a power of two: exact.
+    return sample.Position * (1 / static_cast<double>(std::int64_t{ 1 } << this->Coarsening));
   }
 
   Index<Dim> cellOf(const Sample<Dim>& sample) const
   {
+    return this->cellAt(this->positionOf(sample));
+  }
+
+  /// The cell of a position in cells of this level.
+  Index<Dim> cellAt(const Point<Dim>& position) const
+  {
     Index<Dim> cell;
     for (int a = 0; a < Dim; ++a)
     {
-      const auto at = static_cast<std::int64_t>(std::floor(this->cells(sample.Position[a])));
+      // Towards 0 where it is negative, which makes no difference to the first cell.
+      const auto at = static_cast<std::int64_t>(position[a]);
       cell[a] = std::min(std::max<std::int64_t>(at, 0), this->Grid.cells(a) - 1);
     }
     return cell;
@@ -113,7 +121,7 @@ Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening, int threads)
 
 /// The bands of the levels, zero.
 template <int Dim>
-std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels);
+std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels, int threads);
 
 /// Cells along the longest side.
 template <int Dim>
@@ -140,7 +148,7 @@ double trustInSlope(const HermiteRow<Dim>& row, const float* predictedGradient);
 
 /// Number of knot cells with data.
 template <int Dim>
-double occupiedCells(const Level<Dim>& level);
+double occupiedCells(const Level<Dim>& level, int threads);
 
 /// Solves level @a l from its predecessor.
 ///
@@ -151,10 +159,15 @@ LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
   std::vector<BrickLattice<Dim>>& bricks, std::size_t l, double smoothing,
   const HierarchicalOptions& options, int threads, const ProgressCallback& progress = {});
 
-/// f and its gradient at samples, (1 + Dim) values each, by a level that covers them.
+/**
+ * f and its gradient at sorted samples, (1 + Dim) values each, by a level that covers them.
+ *
+ * On the calling thread, with scratch memory for all of them: a task of few samples, which stays in
+ * the cache.
+ */
 template <int Dim>
-std::vector<float> evaluateLevel(
-  const Level<Dim>& level, const BrickLattice<Dim>& bricks, Samples<Dim> samples, int threads);
+void evaluateLevel(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Sample<Dim>* begin, const Sample<Dim>* end, BrickValues& values);
 }
 
 #endif

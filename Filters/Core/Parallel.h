@@ -25,28 +25,33 @@ inline int resolveThreads(int requested)
 /// alike for any number of threads.
 constexpr std::int64_t VectorChunk = 8192;
 
+inline std::int64_t numberOfChunks(std::int64_t n)
+{
+  return (n + VectorChunk - 1) / VectorChunk;
+}
+
 /// Calls body(begin, end) for fixed chunks of [0, n).
 template <typename Body>
 void parallelChunks(std::int64_t n, int threads, const Body& body)
 {
-  const std::int64_t chunks = (n + VectorChunk - 1) / VectorChunk;
-#pragma omp parallel for schedule(static) num_threads(threads)
+  const std::int64_t chunks = numberOfChunks(n);
+  // Waking threads costs more than a chunk.
+#pragma omp parallel for schedule(static) num_threads(chunks > 1 ? threads : 1)
   for (std::int64_t i = 0; i < chunks; ++i)
   {
     body(i * VectorChunk, std::min(n, (i + 1) * VectorChunk));
   }
 }
 
-/// Sum of body(begin, end) over fixed chunks of [0, n), added in order.
-template <typename Body>
-double parallelSum(std::int64_t n, int threads, const Body& body)
+/// Sum of body(begin, end) over fixed chunks of [0, n), added to @a sum in order.
+template <typename Sum = double, typename Body>
+Sum parallelSum(std::int64_t n, int threads, const Body& body, Sum sum = Sum{})
 {
-  std::vector<double> partial(static_cast<std::size_t>((n + VectorChunk - 1) / VectorChunk));
+  std::vector<Sum> partial(static_cast<std::size_t>(numberOfChunks(n)), sum);
   parallelChunks(n, threads,
     [&](std::int64_t begin, std::int64_t end)
     { partial[static_cast<std::size_t>(begin / VectorChunk)] = body(begin, end); });
-  double sum = 0;
-  for (double p : partial)
+  for (const Sum& p : partial)
   {
     sum += p;
   }

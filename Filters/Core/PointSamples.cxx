@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PointSamples.h"
 
+#include "MortonOrder.h"
 #include "Parallel.h"
+
+#include <utility>
 
 namespace ipia
 {
@@ -10,57 +13,22 @@ namespace
 /// Positions are multiples of the inverse, in cells.
 constexpr double PositionSteps = 1048576;
 
-template <int Dim>
-std::uint64_t mortonKey(const Index<Dim>& i)
-{
-  std::uint64_t key = 0;
-  for (int a = 0; a < Dim; ++a)
-  {
-    // Spreads the bits of one coordinate with gaps for the others.
-    auto v = static_cast<std::uint64_t>(i[a]);
-    if (Dim == 3)
-    {
-      v &= 0x1fffff;
-      v = (v | v << 32) & 0x1f00000000ffff;
-      v = (v | v << 16) & 0x1f0000ff0000ff;
-      v = (v | v << 8) & 0x100f00f00f00f00f;
-      v = (v | v << 4) & 0x10c30c30c30c30c3;
-      v = (v | v << 2) & 0x1249249249249249;
-    }
-    else
-    {
-      v &= 0xffffffff;
-      v = (v | v << 16) & 0x0000ffff0000ffff;
-      v = (v | v << 8) & 0x00ff00ff00ff00ff;
-      v = (v | v << 4) & 0x0f0f0f0f0f0f0f0f;
-      v = (v | v << 2) & 0x3333333333333333;
-      v = (v | v << 1) & 0x5555555555555555;
-    }
-    key |= v << a;
-  }
-  return key;
-}
+/// Samples that the memory needs to answer for one of them.
+constexpr std::int64_t Lookahead = 16;
 
-/// Sorts a power of two of chunks and merges neighbours until one is left.
-template <typename T>
-void sortOnThreads(std::vector<T>& values, int threads)
+/// What a sample is sorted by, and where it is in the input.
+struct KeyedRow
 {
-  constexpr std::int64_t chunks = 16;
-  const auto at = [&](std::int64_t chunk)
-  { return values.begin() + static_cast<std::int64_t>(values.size()) * chunk / chunks; };
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::int64_t k = 0; k < chunks; ++k)
-  {
-    std::sort(at(k), at(k + 1));
-  }
-  for (std::int64_t width = 1; width < chunks; width *= 2)
-  {
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-    for (std::int64_t k = 0; k < chunks; k += 2 * width)
-    {
-      std::inplace_merge(at(k), at(k + width), at(k + 2 * width));
-    }
-  }
+  std::uint64_t Key;
+  std::int64_t Row;
+};
+
+/// std::round() for what fits an integer, without a call where the instruction set has no rounding.
+inline double nearestInteger(double x)
+{
+  const auto below = static_cast<double>(static_cast<std::int64_t>(x)); // towards 0
+  const double rest = x - below;
+  return below + static_cast<double>(rest >= 0.5) - static_cast<double>(rest <= -0.5);
 }
 
 template <int Dim>
@@ -99,14 +67,15 @@ template <int Dim>
 Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>& input, int threads)
 {
   const std::int64_t n = input.Positions.cols(), m = input.ExtraPositions.cols();
-  std::vector<std::pair<std::uint64_t, std::int64_t>> order(static_cast<std::size_t>(n + m));
+  BulkVector<KeyedRow> order(static_cast<std::size_t>(n + m));
   // Rounded, so that noise of the last bits, such as from another unit or origin, does not choose
   // the cell of a point.
   const auto positionOf = [&](std::int64_t k) -> Point<Dim>
   {
     const Point<Dim> u = (k < n ? input.Positions.col(k) : input.ExtraPositions.col(k - n))
                            .cwiseQuotient(lattice.Spacing);
-    return (u * PositionSteps).array().round() / PositionSteps;
+    return (u * PositionSteps).unaryExpr([](double x) { return nearestInteger(x); }) /
+      PositionSteps;
   };
   parallelChunks(n + m, threads,
     [&](std::int64_t begin, std::int64_t end)
@@ -118,19 +87,31 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
         for (int a = 0; a < Dim; ++a)
         {
           const std::int64_t last = (lattice.cells(a) << SubCellBits) - 1;
-          const auto at = static_cast<std::int64_t>(std::floor(u[a] * (1 << SubCellBits)));
+          // Towards 0 where it is negative, which makes no difference to the first sub-cell.
+          const auto at = static_cast<std::int64_t>(u[a] * (1 << SubCellBits));
           subCell[a] = std::min(std::max<std::int64_t>(at, 0), last);
         }
         order[static_cast<std::size_t>(k)] = { mortonKey<Dim>(subCell), k };
       }
     });
-  sortOnThreads(order, threads);
+  sortByKey(
+    order, [](const KeyedRow& row) { return row.Key; }, threads);
   Samples<Dim> samples(order.size());
+  // The input is in any order: ask for it some samples ahead.
+  const auto prefetch = [&](std::int64_t at)
+  {
+    const std::int64_t k = at < n + m ? order[static_cast<std::size_t>(at)].Row : n;
+    if (k < n)
+    {
+      __builtin_prefetch(input.Positions.data() + Dim * k);
+      __builtin_prefetch(input.Normals.data() + Dim * k);
+    }
+  };
   const auto fill = [&](std::size_t at)
   {
-    const std::int64_t k = order[at].second;
+    const std::int64_t k = order[at].Row;
     Sample<Dim>& sample = samples[at];
-    sample.Key = order[at].first;
+    sample.Key = order[at].Key;
     sample.Position = positionOf(k);
     const bool extra = k >= n;
     sample.Normal.setZero();
@@ -152,6 +133,7 @@ Samples<Dim> sortedSamples(const Lattice<Dim>& lattice, const HermiteInput<Dim>&
     {
       for (std::int64_t k = begin; k < end; ++k)
       {
+        prefetch(k + Lookahead);
         fill(static_cast<std::size_t>(k));
       }
     });
@@ -162,15 +144,41 @@ template <int Dim>
 Samples<Dim> cluster(const Samples<Dim>& samples, int halvings, int threads)
 {
   const int shift = Dim * halvings;
-  std::vector<std::size_t> begin; // of each cluster
-  for (std::size_t k = 0; k < samples.size(); ++k)
+  const auto n = static_cast<std::int64_t>(samples.size());
+  const auto isFirst = [&](std::int64_t at)
   {
-    if (k == 0 || samples[k].Key >> shift != samples[k - 1].Key >> shift)
+    const auto k = static_cast<std::size_t>(at);
+    return k == 0 || samples[k].Key >> shift != samples[k - 1].Key >> shift;
+  };
+  // Clusters that begin in each chunk of the samples, then in those before it.
+  std::vector<std::size_t> before(static_cast<std::size_t>(numberOfChunks(n)), 0);
+  parallelChunks(n, threads,
+    [&](std::int64_t first, std::int64_t last)
     {
-      begin.push_back(k);
-    }
+      for (std::int64_t k = first; k < last; ++k)
+      {
+        before[static_cast<std::size_t>(first / VectorChunk)] += isFirst(k);
+      }
+    });
+  std::size_t total = 0;
+  for (std::size_t& count : before)
+  {
+    total += std::exchange(count, total);
   }
-  begin.push_back(samples.size());
+  BulkVector<std::size_t> begin(total + 1); // of each cluster
+  begin.back() = samples.size();
+  parallelChunks(n, threads,
+    [&](std::int64_t first, std::int64_t last)
+    {
+      std::size_t next = before[static_cast<std::size_t>(first / VectorChunk)];
+      for (std::int64_t k = first; k < last; ++k)
+      {
+        if (isFirst(k))
+        {
+          begin[next++] = static_cast<std::size_t>(k);
+        }
+      }
+    });
   Samples<Dim> clusters(begin.size() - 1);
   parallelChunks(static_cast<std::int64_t>(clusters.size()), threads,
     [&](std::int64_t first, std::int64_t last)

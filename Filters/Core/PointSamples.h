@@ -6,9 +6,8 @@
 #ifndef ipia_PointSamples_h
 #define ipia_PointSamples_h
 
+#include "BulkVector.h"
 #include "Lattice.h"
-
-#include <vector>
 
 namespace ipia
 {
@@ -43,7 +42,7 @@ struct Sample
 };
 
 template <int Dim>
-using Samples = std::vector<Sample<Dim>>;
+using Samples = BulkVector<Sample<Dim>>;
 
 /// Sub-cells per knot cell of the finest lattice and axis, as a power of two.
 constexpr int SubCellBits = 3;

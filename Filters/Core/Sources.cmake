@@ -7,6 +7,8 @@ foreach (name IN ITEMS
   list(APPEND ipia_core_sources "${CMAKE_CURRENT_LIST_DIR}/${name}.cxx")
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()
-foreach (name IN ITEMS BandMatrix CubicBasis Dispatch HermiteRows Lattice OutsideDomain Parallel SolverControl Types)
+foreach (name IN ITEMS
+    BandMatrix BulkVector CubicBasis Dispatch FairingKernel HermiteRows Lattice MortonOrder OutsideDomain Parallel
+    RowKernel RowRegisters SolverControl Types)
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")
 endforeach ()

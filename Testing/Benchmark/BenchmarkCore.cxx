@@ -334,12 +334,12 @@ void hermiteSweep(benchmark::State& state)
   const BrickOperator<3> one(band.Bricks, band.Rows, {}, 1), two(band.Bricks, band.Rows, {}, 2);
   std::mt19937_64 engine(1);
   std::uniform_real_distribution<float> uniform(-1, 1);
-  std::vector<float> p(static_cast<std::size_t>(band.Bricks.numberOfActiveBricks()) * BrickSize<3>);
+  BrickValues p(static_cast<std::size_t>(band.Bricks.numberOfActiveBricks()) * BrickSize<3>);
   for (float& value : p)
   {
     value = uniform(engine);
   }
-  std::vector<float> product;
+  BrickValues product;
   std::vector<double> onOne, onTwo;
   for (auto unused : state)
   {

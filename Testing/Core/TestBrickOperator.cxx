@@ -174,15 +174,15 @@ struct System
     }
   }
 
-  std::vector<float> toBricks(const Vector& v) const
+  BrickValues toBricks(const Vector& v) const
   {
-    std::vector<float> bricks(this->Bricks->coefficients().size(), 0.F);
+    BrickValues bricks(this->Bricks->coefficients().size(), 0.F);
     this->forAll(
       [&](std::int64_t flat, std::size_t index) { bricks[index] = static_cast<float>(v[flat]); });
     return bricks;
   }
 
-  Vector fromBricks(const std::vector<float>& bricks) const
+  Vector fromBricks(const BrickValues& bricks) const
   {
     Vector v(this->Grid.numberOfCoefficients());
     this->forAll([&](std::int64_t flat, std::size_t index) { v[flat] = bricks[index]; });
@@ -225,7 +225,7 @@ TYPED_TEST(BrickOperatorTest, EqualsTheDenseNormalEquations)
     System<Dim> system(fairing);
     const BrickOperator<Dim> op(*system.Bricks, system.Rows, fairing, 2);
     const Vector c = test::Random(5).vector(system.Grid.numberOfCoefficients(), -1, 1);
-    std::vector<float> result;
+    BrickValues result;
     op.product(system.toBricks(c), result);
     EXPECT_LE(test::relativeDifference(system.fromBricks(result), system.Matrix * c), 1e-5);
     system.Bricks->coefficients() = system.toBricks(c);
@@ -239,7 +239,7 @@ TYPED_TEST(BrickOperatorTest, HasTheDiagonalOfTheRows)
 {
   constexpr int Dim = TypeParam::value;
   const System<Dim> system(FairingWeights{});
-  std::vector<float> result;
+  BrickValues result;
   BrickOperator<Dim>(*system.Bricks, system.Rows, {}, 1).diagonal(result);
   EXPECT_LE(test::relativeDifference(system.fromBricks(result), system.Matrix.diagonal()), 1e-5);
 }
@@ -252,7 +252,7 @@ TYPED_TEST(BrickOperatorTest, EvaluatesAndMeasures)
   const Vector c = test::Random(5).vector(system.Grid.numberOfCoefficients(), -1, 1);
   system.Bricks->coefficients() = system.toBricks(c);
   const Vector expected = system.Values * c;
-  std::vector<float> values, all;
+  BrickValues values, all;
   op.evaluate(system.Bricks->coefficients(), values);
   op.evaluateWithGradient(system.Bricks->coefficients(), all);
   for (std::size_t k = 0; k < values.size(); ++k)
@@ -267,7 +267,7 @@ TYPED_TEST(BrickOperatorTest, EvaluatesAndMeasures)
   const double quadratic = c.dot(system.Matrix * c) - 2 * system.Right.dot(c);
   EXPECT_NEAR(op.energy(), atZero + quadratic, 1e-4 * (atZero + std::abs(quadratic)));
   // Density: the same as columns of the collocation matrix, weighted.
-  std::vector<float> sums;
+  BrickValues sums;
   op.density(sums);
   Vector weights(static_cast<Eigen::Index>(system.Rows.Rows.size()));
   for (std::size_t k = 0; k < system.Rows.Rows.size(); ++k)

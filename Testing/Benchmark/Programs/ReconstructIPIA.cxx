@@ -30,7 +30,8 @@ using benchmarks::StageClock;
 class FitterStages
 {
 public:
-  FitterStages(vtkIPIAImplicitFitter* fitter, StageClock& clock)
+  /// @param samples  whether the fitter also makes an image
+  FitterStages(vtkIPIAImplicitFitter* fitter, bool samples, StageClock& clock)
     : Clock(clock)
   {
     this->Observer->SetClientData(this);
@@ -51,7 +52,10 @@ public:
       });
     // Once to drop the old function, once for the new one.
     fitter->GetImplicitFunction()->AddObserver(vtkCommand::ModifiedEvent, this->Observer);
-    fitter->AddObserver(vtkCommand::EndEvent, this->Observer);
+    if (samples)
+    {
+      fitter->AddObserver(vtkCommand::EndEvent, this->Observer);
+    }
   }
 
 private:
@@ -101,7 +105,7 @@ void reconstruct(const std::vector<std::string>& arguments)
   {
     setCells(used, cloud, std::stoi(arguments[3]));
   }
-  const FitterStages stages(used, clock);
+  const FitterStages stages(used, contouring, clock);
   std::string refusal;
   vtkNew<vtkCallbackCommand> observer;
   observer->SetClientData(&refusal);
