@@ -44,9 +44,19 @@ struct HierarchicalOptions
   int Threads = 0;
 };
 
+/// What the weights of the rows of a level follow from, a sum or mean over all of them.
+struct RowScales
+{
+  double Weight = 0;     ///< sum of the weights as given
+  double Logarithms = 0; ///< sum of weight times logarithm of the density of rows
+  double Rows = 0;       ///< number of rows
+  double MedianMiss = 0; ///< median of |f - v| by the coarser level
+};
+
 /// What one level did.
 struct LevelReport
 {
+  RowScales Scales;
   double Spacing = 0;
   std::int64_t NumberOfRows = 0;
   std::int64_t NumberOfActiveCoefficients = 0;
@@ -115,6 +125,9 @@ template <int Dim>
 std::vector<Level<Dim>> makeLevels(const Lattice<Dim>& lattice, Samples<Dim> points,
   const HierarchicalOptions& options, int threads);
 
+/// Coarser levels see clusters in sub-cells, so many halvings of their knot cells.
+constexpr int ClusterBits = 2;
+
 /// What a level sees of the data of a finer one.
 template <int Dim>
 Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening, int threads);
@@ -122,6 +135,11 @@ Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening, int threads)
 /// The bands of the levels, zero.
 template <int Dim>
 std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels, int threads);
+
+/// Adds to bands, of which the active coefficients are marked, what these read; zero.
+template <int Dim>
+void finishBricks(
+  const std::vector<Level<Dim>>& levels, std::vector<BrickLattice<Dim>>& bricks, int threads);
 
 /// Cells along the longest side.
 template <int Dim>
@@ -149,6 +167,27 @@ double trustInSlope(const HermiteRow<Dim>& row, const float* predictedGradient);
 /// Number of knot cells with data.
 template <int Dim>
 double occupiedCells(const Level<Dim>& level, int threads);
+
+/// How a level is solved, or a part of it.
+template <int Dim>
+struct LevelTask
+{
+  bool Predicted;         ///< the coefficients at first are the prediction of a coarser level
+  bool Finest;            ///< of the hierarchy
+  double SmoothingLength; ///< see HierarchicalOptions; 0: none
+  const BrickValues* Start = nullptr; ///< where the solution starts if not from the prediction
+  RowScales Elsewhere;                ///< of the rows that do not take part
+};
+
+/// Solves for the active coefficients with the rows of the level's data.
+template <int Dim>
+LevelReport solveRows(const Level<Dim>& level, BrickLattice<Dim>& bricks,
+  const LevelTask<Dim>& task, const HierarchicalOptions& options, int threads,
+  const ProgressCallback& progress = {});
+
+/// The scales of the rows of the level's data alone, but for their misses.
+template <int Dim>
+RowScales scalesOf(const Level<Dim>& level, const BrickLattice<Dim>& bricks, int threads);
 
 /// Solves level @a l from its predecessor.
 ///
