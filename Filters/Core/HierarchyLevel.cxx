@@ -258,10 +258,11 @@ void activateBand(const Level<Dim>& level, BrickLattice<Dim>& bricks)
   }
 }
 
-/// Conjugate gradients with the diagonal as preconditioner, on the active coefficients.
+/// Conjugate gradients with the diagonal as preconditioner, on the active coefficients, until the
+/// square of the residual is at most @a enough or the other limits are met.
 template <int Dim>
 void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
-  double tolerance, StoppingRule rule, int threads, const ProgressCallback& progress,
+  double tolerance, StoppingRule rule, double enough, int threads, const ProgressCallback& progress,
   LevelReport& report)
 {
   BrickValues r, p, q, inverse;
@@ -296,7 +297,7 @@ void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, in
   report.ResidualHistory.assign(1, first > 0 ? 1. : 0.);
   double measure = report.ResidualHistory.front();
   float* c = bricks.coefficients().data();
-  while (report.NumberOfIterations < iterations && rz > 0 && !(measure < tolerance))
+  while (report.NumberOfIterations < iterations && rz > enough && !(measure < tolerance))
   {
     if (progress && !progress(static_cast<double>(report.NumberOfIterations) / iterations))
     {
@@ -349,6 +350,7 @@ void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, in
       });
     ++report.NumberOfIterations;
   }
+  report.ResidualPerRow = rz / std::max(static_cast<double>(report.NumberOfRows), 1.0);
 }
 }
 
@@ -536,7 +538,8 @@ LevelReport solveRows(const Level<Dim>& level, BrickLattice<Dim>& bricks,
     tolerance = options.FinestTolerance;
   }
   solveSystem(system, bricks, iterations, tolerance,
-    finest ? options.Rule : StoppingRule::RelativeResidual, threads, progress, report);
+    finest ? options.Rule : StoppingRule::RelativeResidual,
+    task.ResidualPerRow * static_cast<double>(report.NumberOfRows), threads, progress, report);
   if (finest)
   {
     report.Energy = system.energy();

@@ -63,6 +63,8 @@ struct LevelReport
   int NumberOfIterations = 0;
   /// The preconditioned residual before the first and after each iteration, relative to the first.
   std::vector<double> ResidualHistory;
+  /// The square of the last of these, not relative, by the number of rows.
+  double ResidualPerRow = 0;
   /// sum_k w_k r_k^2 over all rows, value and gradient, with the weights of the level.
   double Energy = 0;
   double AverageError = 0; ///< E_ave, mean of f^2 over the points; finest level only, as Energy
@@ -177,6 +179,7 @@ struct LevelTask
   double SmoothingLength; ///< see HierarchicalOptions; 0: none
   const BrickValues* Start = nullptr; ///< where the solution starts if not from the prediction
   RowScales Elsewhere;                ///< of the rows that do not take part
+  double ResidualPerRow = 0;          ///< the iteration ends when it is no larger
 };
 
 /// Solves for the active coefficients with the rows of the level's data.

@@ -13,8 +13,6 @@ namespace ipia
 {
 namespace
 {
-/// Iterations of an addition: coefficients start near their final values where points were before.
-constexpr int AdditionIterations = 6;
 /// A smoothing length is found anew when there are so many times the points.
 constexpr std::int64_t GrowthOfPoints = 2;
 /// BrickWidth as a power of two.
@@ -495,10 +493,7 @@ bool IncrementalFit<Dim>::add(
   }
   const Samples<Dim> news =
     newsAmong(samples, levels.back(), this->Last.Function->levels().back(), threads);
-  HierarchicalOptions options = this->Options;
-  options.DenseIterations = std::min(options.DenseIterations, AdditionIterations);
-  options.BandIterations = std::min(options.BandIterations, AdditionIterations);
-  const bool gated = options.SmoothingLength < 0 && this->Last.SmoothingLength == 0;
+  const bool gated = this->Options.SmoothingLength < 0 && this->Last.SmoothingLength == 0;
 
   std::unique_ptr<ChangingLevel<Dim>> coarser;
   for (std::size_t l = 0; l < levels.size(); ++l)
@@ -513,6 +508,8 @@ bool IncrementalFit<Dim>::add(
     task.Finest = l + 1 == levels.size();
     task.SmoothingLength = this->Last.SmoothingLength;
     task.Start = &changing->start();
+    // As well as the fit of all points was solved, which takes fewer iterations from here.
+    task.ResidualPerRow = this->Last.Reports[l].ResidualPerRow;
     const Level<Dim> part = level.Dense
       ? Level<Dim>{ level.Coarsening, level.Grid, true,
           merged(this->Data[l], halvingsOf(level), threads), {} }
@@ -534,7 +531,8 @@ bool IncrementalFit<Dim>::add(
         progress((static_cast<double>(l) + ofLevel) / static_cast<double>(levels.size()));
     };
     LevelReport& report = result.Reports[l];
-    report = solveRows(part, changing->zone(), task, options, threads, share);
+    report = solveRows(part, changing->zone(), task, this->Options, threads, share);
+    report.ResidualPerRow = task.ResidualPerRow;
     if (report.Aborted)
     {
       result.Aborted = true;
