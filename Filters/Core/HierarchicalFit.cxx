@@ -82,18 +82,9 @@ Misses missesOf(
     });
 }
 
-template <int Dim>
-bool isNoise(double noise, const std::vector<Level<Dim>>& levels,
-  const std::vector<BrickLattice<Dim>>& bricks, std::size_t last, const Samples<Dim>& points,
-  int threads)
+bool isNoise(double noise, double spacing, const std::function<double()>& noiseBefore)
 {
-  if (!(noise > NoiseGate * levels[last].Grid.Spacing.mean()))
-  {
-    return false;
-  }
-  const double before =
-    last > 0 ? missesOf(levels[last - 1], bricks[last - 1], points, threads).noise() : 0;
-  return noise > NoiseFall * before;
+  return noise > NoiseGate * spacing && noise > NoiseFall * noiseBefore();
 }
 
 namespace
@@ -224,7 +215,10 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
     const std::size_t last = gate - 1;
     misses = missesOf(levels[last], bricks[last], points, threads);
     result.Noise = misses.noise();
-    if (isNoise(result.Noise, levels, bricks, last, points, threads))
+    const auto before = [&] {
+      return last > 0 ? missesOf(levels[last - 1], bricks[last - 1], points, threads).noise() : 0;
+    };
+    if (isNoise(result.Noise, levels[last].Grid.Spacing.mean(), before))
     {
       result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
     }
@@ -258,13 +252,9 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
 }
 
 template Misses missesOf<2>(const Level<2>&, const BrickLattice<2>&, const Samples<2>&, int);
-template bool isNoise<2>(double, const std::vector<Level<2>>&, const std::vector<BrickLattice<2>>&,
-  std::size_t, const Samples<2>&, int);
 template HierarchicalResult<2> fitHierarchical<2>(const Lattice<2>&, HermiteInput<2>,
   const HierarchicalOptions&, const ProgressCallback&, std::vector<Level<2>>*);
 template Misses missesOf<3>(const Level<3>&, const BrickLattice<3>&, const Samples<3>&, int);
-template bool isNoise<3>(double, const std::vector<Level<3>>&, const std::vector<BrickLattice<3>>&,
-  std::size_t, const Samples<3>&, int);
 template HierarchicalResult<3> fitHierarchical<3>(const Lattice<3>&, HermiteInput<3>,
   const HierarchicalOptions&, const ProgressCallback&, std::vector<Level<3>>*);
 }

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -80,12 +81,12 @@ template <int Dim>
 Misses missesOf(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
   const Samples<Dim>& points, int threads);
 
-/// Whether it is noise that points miss the surface of level @a last by, and no detail that its
-/// lattice cannot follow.
-template <int Dim>
-bool isNoise(double noise, const std::vector<Level<Dim>>& levels,
-  const std::vector<BrickLattice<Dim>>& bricks, std::size_t last, const Samples<Dim>& points,
-  int threads);
+/// Whether it is noise that points miss the surface of a level by, and no detail that its lattice
+/// cannot follow.
+///
+/// @param noiseBefore  by how much they miss that of the coarser level, 0 without; asked if it
+/// counts
+bool isNoise(double noise, double spacing, const std::function<double()>& noiseBefore);
 
 /// @param lattice     the finest lattice
 /// @param usedLevels  if given, the levels with their data, unless the fit is aborted

@@ -464,6 +464,18 @@ HierarchicalResult<Dim> IncrementalFit<Dim>::fit(const Lattice<Dim>& lattice,
   return result;
 }
 
+template <int Dim>
+Misses IncrementalFit<Dim>::missesOfAll(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Samples<Dim>& added, int threads) const
+{
+  Misses misses = missesOf(level, bricks, added, threads);
+  for (const Samples<Dim>& run : this->Points)
+  {
+    misses += missesOf(level, bricks, run, threads);
+  }
+  return misses;
+}
+
 /// False if all is to be fitted again.
 template <int Dim>
 bool IncrementalFit<Dim>::add(
@@ -545,23 +557,23 @@ bool IncrementalFit<Dim>::add(
     coarser = std::move(changing);
     if (gated && l + 1 == this->Last.DeterminedLevels)
     {
+      const auto n = static_cast<double>(samples.size());
+      const auto kept = static_cast<double>(this->Input.Positions.cols());
       const double noise = missesOf(level, bricks[l], samples, threads).noise();
-      if (isNoise(noise, levels, bricks, l, samples, threads))
+      result.Noise =
+        std::sqrt((n * noise * noise + kept * this->Last.Noise * this->Last.Noise) / (n + kept));
+      const auto before = [&] {
+        return l > 0 ? this->missesOfAll(levels[l - 1], bricks[l - 1], samples, threads).noise()
+                     : 0.0;
+      };
+      if (isNoise(result.Noise, level.Grid.Spacing.mean(), before))
       {
         return false;
       }
-      const auto n = static_cast<double>(samples.size());
-      const auto all = n + static_cast<double>(this->Input.Positions.cols());
-      result.Noise =
-        std::sqrt((n * noise * noise + (all - n) * this->Last.Noise * this->Last.Noise) / all);
     }
   }
+  const Misses misses = this->missesOfAll(levels.back(), bricks.back(), samples, threads);
   this->Points.push_back(std::move(samples));
-  Misses misses;
-  for (const Samples<Dim>& run : this->Points)
-  {
-    misses += missesOf(levels.back(), bricks.back(), run, threads);
-  }
   LevelReport& finest = result.Reports.back();
   finest.AverageError = misses.Points > 0 ? misses.Values / misses.Points : 0;
   finest.MaximumError = misses.Largest;

@@ -53,6 +53,8 @@ private:
     const HierarchicalOptions& options) const;
   bool add(
     HermiteInput<Dim> added, const ProgressCallback& progress, HierarchicalResult<Dim>& result);
+  Misses missesOfAll(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+    const Samples<Dim>& added, int threads) const;
 
   Lattice<Dim> Grid;
   HierarchicalOptions Options;
