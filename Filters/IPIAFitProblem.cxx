@@ -24,6 +24,8 @@ constexpr double FewestSpacings = 8, MostSpacings = 256;
 constexpr double MostAutomaticSamples = 268435456; // 2^28
 /// Bytes that the fit needs per coefficient and per row, all its arrays together.
 constexpr double BytesPerCoefficient = 96, BytesPerRow = 160;
+/// And what is kept of a point that others may be added to: twice the point, and clusters of it.
+constexpr double BytesPerKeptPoint = 300;
 /// And where the spline is rational: of its iteration per coefficient, and per sample of the slices
 /// that are sampled at a time.
 constexpr double BytesPerWeight = 64, BytesPerRationalSample = 16, RationalSlices = 16;
@@ -367,6 +369,10 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
     1 + (parameters.GenerateGradient ? 4 : 0) + (parameters.GenerateSupport ? 1 : 0);
   const double rows = 3. * static_cast<double>(this->Cloud.Positions.size());
   double needed = rows * BytesPerRow;
+  if (parameters.Incremental && !parameters.isClassic())
+  {
+    needed += static_cast<double>(this->Cloud.Positions.size()) * BytesPerKeptPoint;
+  }
   if (this->staysInBricks(parameters))
   {
     const double bricks[3] = { this->GridSize[0] / 4. + 1, this->GridSize[1] / 4. + 1,

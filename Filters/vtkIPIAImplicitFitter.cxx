@@ -200,6 +200,7 @@ ipia::FitParameters vtkIPIAImplicitFitter::Parameters() const
   p.GenerateGradient = this->GenerateGradient;
   p.GenerateSupport = this->GenerateSupport;
   p.OutputScalarType = this->OutputScalarType;
+  p.Incremental = this->Incremental;
   p.FunctionOnly = this->FunctionOnly;
   return p;
 }

@@ -46,14 +46,32 @@ bool isSame(const Matrix& a, const Matrix& b)
 
 bool isSameMethod(const HierarchicalOptions& a, const HierarchicalOptions& b)
 {
-  const auto values = [](const HierarchicalOptions& o)
+  // By structured bindings, which do not compile if a member is forgotten.
+  const auto valuesOf = [](const HierarchicalOptions& options)
   {
-    return std::make_tuple(o.NumberOfLevels, o.DenseCells, o.DenseGradient, o.BandGradient,
-      o.FinestGradient, o.DenseMembrane, o.DenseThinPlate, o.BandMembrane, o.BandThinPlate,
-      o.DenseIterations, o.DenseTolerance, o.BandIterations, o.FinestIterations, o.BandTolerance,
-      o.FinestTolerance, o.Rule, o.RobustFactor, o.SmoothingLength);
+    const auto& [numberOfLevels, denseCells, denseGradient, bandGradient, finestGradient,
+      denseMembrane, denseThinPlate, bandMembrane, bandThinPlate, denseIterations, denseTolerance,
+      bandIterations, finestIterations, bandTolerance, finestTolerance, rule, robustFactor,
+      smoothingLength, threads] = options;
+    static_cast<void>(threads); // make no difference
+    return std::make_tuple(numberOfLevels, denseCells, denseGradient, bandGradient, finestGradient,
+      denseMembrane, denseThinPlate, bandMembrane, bandThinPlate, denseIterations, denseTolerance,
+      bandIterations, finestIterations, bandTolerance, finestTolerance, rule, robustFactor,
+      smoothingLength);
   };
-  return values(a) == values(b);
+  return valuesOf(a) == valuesOf(b);
+}
+
+/// Whether an input begins with the points of another one and has its extra rows, bit for bit.
+template <int Dim>
+bool continues(const HermiteInput<Dim>& input, const HermiteInput<Dim>& last)
+{
+  const auto& [positions, normals, weights, fairing, extraPositions, extraValues, extraWeights] =
+    input;
+  return beginsWith(positions, last.Positions) && beginsWith(normals, last.Normals) &&
+    beginsWithOptional(weights, last.Weights) && beginsWithOptional(fairing, last.LocalFairing) &&
+    isSame(extraPositions, last.ExtraPositions) && isSame(extraValues, last.ExtraValues) &&
+    isSame(extraWeights, last.ExtraWeights);
 }
 
 template <int Dim>
@@ -418,13 +436,7 @@ bool IncrementalFit<Dim>::canAdd(const Lattice<Dim>& lattice, const HermiteInput
 {
   const bool kept = this->Last.Function && lattice.Size == this->Grid.Size &&
     lattice.Spacing == this->Grid.Spacing && isSameMethod(options, this->Options) &&
-    beginsWith(input.Positions, this->Input.Positions) &&
-    beginsWith(input.Normals, this->Input.Normals) &&
-    beginsWithOptional(input.Weights, this->Input.Weights) &&
-    beginsWithOptional(input.LocalFairing, this->Input.LocalFairing) &&
-    isSame(input.ExtraPositions, this->Input.ExtraPositions) &&
-    isSame(input.ExtraValues, this->Input.ExtraValues) &&
-    isSame(input.ExtraWeights, this->Input.ExtraWeights);
+    continues(input, this->Input);
   const bool noiseIsKnown = this->Last.SmoothingLength == 0 && this->Last.DeterminedLevels > 0;
   const bool lengthIsOld = options.SmoothingLength < 0 && !noiseIsKnown &&
     input.Positions.cols() >= GrowthOfPoints * this->PointsOfLength;
