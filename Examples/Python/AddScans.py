@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scans of a torus, added to a fit one by one, against a fit of all of them each time.
 
+Processor seconds are those of the whole reconstruction: the contour takes most of them here, as it is
+made anew each time.
+
     python3 AddScans.py [surface.vtp]
 """
 import random
