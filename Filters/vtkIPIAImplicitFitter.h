@@ -84,7 +84,7 @@
  * With Incremental, points that are appended to the input, or blocks to a composite one, are added
  * to the last fit: the coefficients near them are solved for, from their last values, the others
  * stay. That takes a fraction of a fit's time, and ends within 1e-3 of its f (of the longest side,
- * root mean square within two knot spacings of the points), usually ten times nearer. The lattice
+ * root mean square within two knot spacings of the points), usually much nearer. The lattice
  * must be the same: fix ModelBounds and GridSize, as an automatic domain grows with the points.
  *
  * Otherwise, and where it cannot be, all is fitted again, and NumberOfPointsAdded is 0: where
