@@ -26,6 +26,8 @@ constexpr double FewestSpacings = 8, MostSpacings = 256;
 constexpr double MostAutomaticSamples = 268435456; // 2^28
 /// Bytes that the fit needs per coefficient and per row, all its arrays together.
 constexpr double BytesPerCoefficient = 96, BytesPerRow = 160;
+/// And what is kept of a point that others may be added to: twice the point, and clusters of it.
+constexpr double BytesPerKeptPoint = 300;
 /// And where the spline is rational: of its iteration per coefficient, and per sample of the slices
 /// that are sampled at a time.
 constexpr double BytesPerWeight = 64, BytesPerRationalSample = 16, RationalSlices = 16;
@@ -394,6 +396,10 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
     {
       needed += samples * bytes + coefficients * BytesPerArrayCoefficient;
     }
+  }
+  if (parameters.Incremental && !parameters.isClassic())
+  {
+    needed += static_cast<double>(this->Cloud.Positions.size()) * BytesPerKeptPoint;
   }
   if (this->staysInBricks(parameters))
   {

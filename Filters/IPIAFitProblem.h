@@ -38,6 +38,7 @@ struct FitParameters
   bool GenerateGradient;
   bool GenerateSupport;
   int OutputScalarType;
+  bool Incremental;
   bool FunctionOnly; ///< nothing but the function is wanted, no image and no lattice
 
   /// The papers' method on one level, with offset rows; otherwise the fit is hierarchical.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IPIAFitSolution.h"
 
-#include "Core/HierarchicalFit.h"
 #include "Core/Parallel.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFitter.h"
@@ -179,6 +178,7 @@ void solveClassic(const Lattice<Dim>& lattice, const FitProblem& problem,
   solution.MaximumError = fitted.MaximumError;
   solution.Oscillation = fitted.Oscillation;
   solution.WeightStepSize = fitted.WeightStepSize;
+  solution.NumberOfCoefficientsSolved = lattice.numberOfCoefficients();
 }
 
 /// Points and gradient rows, or offset rows in their place as extra rows.
@@ -247,7 +247,7 @@ HermiteInput<Dim> hermiteInput(const Lattice<Dim>& lattice, const FitProblem& pr
 template <int Dim>
 void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
   const FitParameters& parameters, const OffsetRows& offsets, const ProgressCallback& progress,
-  FitSolution<Dim>& solution)
+  IncrementalFit<Dim>* incremental, FitSolution<Dim>& solution)
 {
   HierarchicalOptions options;
   options.NumberOfLevels = parameters.NumberOfLevels;
@@ -268,8 +268,10 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
     options.BandThinPlate = membrane ? 0 : parameters.FairingWeight;
     options.SmoothingLength = 0;
   }
-  HierarchicalResult<Dim> fitted = fitHierarchical(
-    lattice, hermiteInput(lattice, problem, offsets, solution.Place), options, progress);
+  HermiteInput<Dim> rows = hermiteInput(lattice, problem, offsets, solution.Place);
+  const HierarchicalResult<Dim> fitted = incremental
+    ? incremental->fit(lattice, std::move(rows), options, progress)
+    : fitHierarchical(lattice, std::move(rows), options, progress);
   solution.Aborted = fitted.Aborted;
   if (fitted.Aborted)
   {
@@ -279,6 +281,8 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
   solution.NumberOfLevels = static_cast<int>(fitted.Reports.size());
   solution.Noise = fitted.Noise;
   solution.SmoothingLength = fitted.SmoothingLength;
+  solution.NumberOfPointsAdded = fitted.NumberOfPointsAdded;
+  solution.NumberOfCoefficientsSolved = fitted.numberOfCoefficientsSolved();
   const LevelReport& finest = fitted.Reports.back();
   solution.Solver.NumberOfIterations = finest.NumberOfIterations;
   solution.Solver.Energy = finest.Energy;
@@ -344,8 +348,8 @@ Lattice<Dim> latticeOf(const FitProblem& problem, const Placement<Dim>& place)
 }
 
 template <int Dim>
-FitSolution<Dim> solve(
-  const FitProblem& problem, const FitParameters& parameters, const ProgressCallback& progress)
+FitSolution<Dim> solve(const FitProblem& problem, const FitParameters& parameters,
+  const ProgressCallback& progress, IncrementalFit<Dim>* incremental)
 {
   FitSolution<Dim> solution;
   solution.Place = placementOf<Dim>(problem);
@@ -370,7 +374,7 @@ FitSolution<Dim> solve(
   }
   else
   {
-    solveHierarchical(lattice, problem, parameters, offsets, progress, solution);
+    solveHierarchical(lattice, problem, parameters, offsets, progress, incremental, solution);
   }
   // Arrays of float hold f, whose far field is as large as an offset.
   const double largest = std::max({ solution.Solver.Energy, solution.MaximumError,
@@ -387,8 +391,10 @@ FitSolution<Dim> solve(
 
 template Placement<2> placementOf<2>(const FitProblem&);
 template Lattice<2> latticeOf<2>(const FitProblem&, const Placement<2>&);
-template FitSolution<2> solve<2>(const FitProblem&, const FitParameters&, const ProgressCallback&);
 template Placement<3> placementOf<3>(const FitProblem&);
 template Lattice<3> latticeOf<3>(const FitProblem&, const Placement<3>&);
-template FitSolution<3> solve<3>(const FitProblem&, const FitParameters&, const ProgressCallback&);
+template FitSolution<2> solve<2>(
+  const FitProblem&, const FitParameters&, const ProgressCallback&, IncrementalFit<2>*);
+template FitSolution<3> solve<3>(
+  const FitProblem&, const FitParameters&, const ProgressCallback&, IncrementalFit<3>*);
 }

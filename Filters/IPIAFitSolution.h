@@ -8,6 +8,7 @@
 
 #include "Core/BrickSpline.h"
 #include "Core/ImplicitFit.h"
+#include "Core/IncrementalFit.h"
 #include "IPIAFitProblem.h"
 #include "IPIAPlacedSpline.h"
 
@@ -23,14 +24,16 @@ struct FitSolution
   SolverResult Solver;
   double AverageError = 0;
   double MaximumError = 0;
-  double Oscillation = 0;     ///< of a single level with offset rows, 0 otherwise
-  double WeightStepSize = 0;  ///< the smallest that a step of the weights was taken with
-  double OffsetDistance = 0;  ///< of the offset rows, 0 without
-  int NumberOfLevels = 1;     ///< of the hierarchy
-  double Noise = 0;           ///< see HierarchicalResult
-  double SmoothingLength = 0; ///< in world units
-  std::string Error;          ///< why there is no result; empty otherwise, or if it was aborted
-  std::string Warning;        ///< what the user should know about the result
+  double Oscillation = 0;               ///< of a single level with offset rows, 0 otherwise
+  double WeightStepSize = 0;            ///< the smallest that a step of the weights was taken with
+  double OffsetDistance = 0;            ///< of the offset rows, 0 without
+  int NumberOfLevels = 1;               ///< of the hierarchy
+  double Noise = 0;                     ///< see HierarchicalResult
+  double SmoothingLength = 0;           ///< in world units
+  std::int64_t NumberOfPointsAdded = 0; ///< see HierarchicalResult
+  std::int64_t NumberOfCoefficientsSolved = 0; ///< on all levels
+  std::string Error;   ///< why there is no result; empty otherwise, or if it was aborted
+  std::string Warning; ///< what the user should know about the result
   bool Aborted = false;
 
   bool isValid() const { return this->Error.empty() && !this->Aborted; }
@@ -48,9 +51,10 @@ Placement<Dim> placementOf(const FitProblem& problem);
 template <int Dim>
 Lattice<Dim> latticeOf(const FitProblem& problem, const Placement<Dim>& place);
 
+/// @param incremental  if given, adds to its last fit where it can; of the hierarchy
 template <int Dim>
-FitSolution<Dim> solve(
-  const FitProblem& problem, const FitParameters& parameters, const ProgressCallback& progress);
+FitSolution<Dim> solve(const FitProblem& problem, const FitParameters& parameters,
+  const ProgressCallback& progress, IncrementalFit<Dim>* incremental = nullptr);
 }
 
 #endif

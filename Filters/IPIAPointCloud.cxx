@@ -369,20 +369,37 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> momentsOf(
   const PointCloud& cloud, std::size_t step, Eigen::Vector3d& centre)
 {
   const Vector3 first(cloud.Positions.front().data());
-  centre.setZero();
-  double count = 0;
-  for (std::size_t k = 0; k < cloud.Positions.size(); k += step)
-  {
-    centre += Vector3(cloud.Positions[k].data()) - first;
-    ++count;
-  }
-  centre = first + centre / count;
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < cloud.Positions.size(); k += step)
-  {
-    const Eigen::Vector3d d = (Vector3(cloud.Positions[k].data()) - centre) / cloud.longestSide();
-    scatter += d * d.transpose();
-  }
+  const auto stride = static_cast<std::int64_t>(step);
+  const std::int64_t n = (static_cast<std::int64_t>(cloud.Positions.size()) + stride - 1) / stride;
+  const auto at = [&](std::int64_t k)
+  { return Vector3(cloud.Positions[static_cast<std::size_t>(k * stride)].data()); };
+  centre = parallelSum<Eigen::Vector3d>(
+    n, resolveThreads(0),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        sum += at(k) - first;
+      }
+      return sum;
+    },
+    Eigen::Vector3d::Zero());
+  centre = first + centre / static_cast<double>(n);
+  const double side = cloud.longestSide();
+  const auto scatter = parallelSum<Eigen::Matrix3d>(
+    n, resolveThreads(0),
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        const Eigen::Vector3d d = (at(k) - centre) / side;
+        sum += d * d.transpose();
+      }
+      return sum;
+    },
+    Eigen::Matrix3d::Zero());
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter);
 }
 }

@@ -56,6 +56,9 @@ public:
 
   std::unique_ptr<ipia::FitSolution<2>> Planar;
   std::unique_ptr<ipia::FitSolution<3>> Spatial;
+  /// What points may be added to; nullptr but with Incremental.
+  std::unique_ptr<ipia::IncrementalFit<2>> PlanarMemory;
+  std::unique_ptr<ipia::IncrementalFit<3>> SpatialMemory;
   vtkNew<vtkImageData> ControlLattice;
   std::vector<vtkMTimeType> FitIdentity;
   std::vector<double> FitParameters;
@@ -76,6 +79,25 @@ public:
     {
       action(*this->Spatial);
     }
+  }
+
+  template <int Dim>
+  std::unique_ptr<ipia::IncrementalFit<Dim>>& Memory()
+  {
+    if constexpr (Dim == 2)
+    {
+      return this->PlanarMemory;
+    }
+    else
+    {
+      return this->SpatialMemory;
+    }
+  }
+
+  void Forget()
+  {
+    this->PlanarMemory.reset();
+    this->SpatialMemory.reset();
   }
 
   template <int Dim>
@@ -118,6 +140,7 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
   , GenerateSupport(false)
   , OutputScalarType(VTK_FLOAT)
   , FitPointArrays(true)
+  , Incremental(false)
   , FunctionOnly(false)
   , State(new Internals)
 {
@@ -166,6 +189,7 @@ ipia::FitParameters vtkIPIAImplicitFitter::Parameters() const
   p.GenerateGradient = this->GenerateGradient;
   p.GenerateSupport = this->GenerateSupport;
   p.OutputScalarType = this->OutputScalarType;
+  p.Incremental = this->Incremental;
   p.FunctionOnly = this->FunctionOnly;
   return p;
 }
@@ -378,6 +402,7 @@ void vtkIPIAImplicitFitter::ResetResults()
   this->Oscillation = this->OffsetDistanceUsed = this->WeightStepSizeUsed = 0;
   this->NumberOfLevelsUsed = 0;
   this->NoiseFound = this->SmoothingLengthUsed = 0;
+  this->NumberOfPointsAdded = this->NumberOfCoefficientsSolved = 0;
   std::fill_n(this->GridSizeUsed, 3, 0);
   vtkMath::UninitializeBounds(this->ModelBoundsUsed);
 }
@@ -393,9 +418,19 @@ bool vtkIPIAImplicitFitter::FitInDimension()
     const double end = this->State->Current->Arrays.empty() ? ProgressOfFit : ProgressOfFunction;
     return ipia::reportProgress(this, ProgressOfRows + (end - ProgressOfRows) * farthest);
   };
+  auto& memory = this->State->Memory<Dim>();
+  if (!this->Incremental || this->Parameters().isClassic())
+  {
+    this->State->Forget();
+  }
+  else if (!memory)
+  {
+    this->State->Forget();
+    memory = std::make_unique<ipia::IncrementalFit<Dim>>();
+  }
   auto& slot = this->State->Slot<Dim>();
   slot = std::make_unique<ipia::FitSolution<Dim>>(
-    ipia::solve<Dim>(*this->State->Current, this->Parameters(), progress));
+    ipia::solve<Dim>(*this->State->Current, this->Parameters(), progress, memory.get()));
   if (!slot->Error.empty())
   {
     vtkErrorMacro(<< slot->Error);
@@ -420,6 +455,8 @@ bool vtkIPIAImplicitFitter::FitInDimension()
   this->NumberOfLevelsUsed = slot->NumberOfLevels;
   this->NoiseFound = slot->Noise;
   this->SmoothingLengthUsed = slot->SmoothingLength;
+  this->NumberOfPointsAdded = slot->NumberOfPointsAdded;
+  this->NumberOfCoefficientsSolved = slot->NumberOfCoefficientsSolved;
   this->State->Function->SetSpline(slot->placed());
   if (slot->Function)
   {
@@ -431,6 +468,10 @@ bool vtkIPIAImplicitFitter::FitInDimension()
 bool vtkIPIAImplicitFitter::Fit()
 {
   Internals& state = *this->State;
+  if (!this->Incremental)
+  {
+    state.Forget();
+  }
   const ipia::FitProblem& problem = *state.Current;
   // What the fit depends on, to reuse it when only the samples change.
   std::vector<vtkMTimeType> identity = state.ProblemIdentity;
@@ -491,6 +532,7 @@ bool vtkIPIAImplicitFitter::Fit()
     state.FailedIdentity = identity;
     state.FailedParameters = parameters;
     this->DiscardFit();
+    state.Forget();
     return false;
   }
   std::copy_n(problem.GridSize, 3, this->GridSizeUsed);
@@ -701,6 +743,9 @@ void vtkIPIAImplicitFitter::WriteResults(vtkFieldData* field) const
   addResult(field, "NumberOfLevelsUsed", this->NumberOfLevelsUsed);
   addResult(field, "NoiseFound", this->NoiseFound);
   addResult(field, "SmoothingLengthUsed", this->SmoothingLengthUsed);
+  addResult(field, "NumberOfPointsAdded", static_cast<double>(this->NumberOfPointsAdded));
+  addResult(
+    field, "NumberOfCoefficientsSolved", static_cast<double>(this->NumberOfCoefficientsSolved));
   vtkNew<vtkIntArray> grid;
   grid->SetName("GridSizeUsed");
   grid->SetNumberOfComponents(3);
@@ -744,6 +789,7 @@ int vtkIPIAImplicitFitter::RequestData(
   if (!problem.Refusal.empty())
   {
     this->DiscardFit();
+    this->State->Forget();
     vtkErrorMacro(<< problem.Refusal);
     return 1;
   }
@@ -854,6 +900,7 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FitPointArrays: " << this->FitPointArrays << "\n";
   os << indent << "PointDataArraySelection:\n";
   this->State->PointArrays->PrintSelf(os, indent.GetNextIndent());
+  os << indent << "Incremental: " << this->Incremental << "\n";
   os << indent << "NumberOfIterationsUsed: " << this->NumberOfIterationsUsed << "\n";
   os << indent << "StepSizeUsed: " << this->StepSizeUsed << "\n";
   os << indent << "Energy: " << this->EnergyReached << "\n";
@@ -865,6 +912,8 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfLevelsUsed: " << this->NumberOfLevelsUsed << "\n";
   os << indent << "NoiseFound: " << this->NoiseFound << "\n";
   os << indent << "SmoothingLengthUsed: " << this->SmoothingLengthUsed << "\n";
+  os << indent << "NumberOfPointsAdded: " << this->NumberOfPointsAdded << "\n";
+  os << indent << "NumberOfCoefficientsSolved: " << this->NumberOfCoefficientsSolved << "\n";
   os << indent << "GridSizeUsed: " << triple(this->GridSizeUsed) << "\n";
   os << indent << "ModelBoundsUsed: " << bounds(this->ModelBoundsUsed) << "\n";
 }

@@ -100,6 +100,24 @@
  * weight
  * 1. SetInputArrayToProcess 2 (port 1): the values (default: the active point scalars).
  *
+ * ### Adding points
+ * With Incremental, points that are appended to the input, or blocks to a composite one, are added
+ * to the last fit: the coefficients near them are solved for, from their last values, the others
+ * stay. That takes a fraction of a fit's time, and ends within 1e-3 of its f (of the longest side,
+ * root mean square within two knot spacings of the points), usually much nearer. The lattice
+ * must be the same: fix ModelBounds and GridSize, as an automatic domain grows with the points.
+ *
+ * Otherwise, and where it cannot be, all is fitted again, and NumberOfPointsAdded is 0: where
+ * domain, grid size or a parameter of the fit are not those of the last fit; points of it are
+ * missing, not in front, or have other positions, normals, weights or local fairing weights, bit
+ * for bit; with offset rows; where extra rows have changed. The smoothing length stays that of the
+ * last fit; where it is not 0, or points were too sparse to tell, all is fitted again once there
+ * are twice as many points, and where it is 0, once added points are noisy. In the plane as in
+ * space.
+ *
+ * After an addition Energy, NumberOfIterationsUsed and ResidualHistory are of the rows near the
+ * added points, and NoiseFound is made of the last one and that of the added points.
+ *
  * ### Output
  * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`, and the point
  * arrays of the input; the results below as field data. Origin and last point are the ends of the
@@ -433,6 +451,17 @@ public:
 
   ///@{
   /**
+   * Add new points to the last fit where that is possible; see "Adding points" above. What that
+   * needs of the last fit (a copy of the points in two orders, and clusters of them) is kept only
+   * while this is on, from the first fit with it. Default off.
+   */
+  vtkSetMacro(Incremental, bool);
+  vtkGetMacro(Incremental, bool);
+  vtkBooleanMacro(Incremental, bool);
+  ///@}
+
+  ///@{
+  /**
    * Add the exact gradient of f to output 0 as `Gradient`. Default off.
    */
   vtkSetMacro(GenerateGradient, bool);
@@ -494,7 +523,9 @@ public:
    * points. NoiseFound is the root mean square distance (world units) of the points from f = 0 on
    * the finest level that they alone determine, 0 if they are too sparse for any or FairingWeight
    * is set; SmoothingLengthUsed (world units) the length below which noise is smoothed away, 0 on
-   * clean data.
+   * clean data. NumberOfPointsAdded is the number of points that were added to an earlier fit, 0 if
+   * all points were fitted; NumberOfCoefficientsSolved that of coefficients solved for, on all
+   * levels.
    */
   vtkGetMacro(NumberOfIterationsUsed, int);
   vtkGetMacro(StepSizeUsed, double);
@@ -507,6 +538,8 @@ public:
   vtkGetMacro(NumberOfLevelsUsed, int);
   vtkGetMacro(NoiseFound, double);
   vtkGetMacro(SmoothingLengthUsed, double);
+  vtkGetMacro(NumberOfPointsAdded, vtkIdType);
+  vtkGetMacro(NumberOfCoefficientsSolved, vtkIdType);
   vtkGetVector3Macro(GridSizeUsed, int);
   vtkGetVector6Macro(ModelBoundsUsed, double);
   ///@}
@@ -578,8 +611,11 @@ protected:
   int NumberOfLevelsUsed;
   double NoiseFound;
   double SmoothingLengthUsed;
+  vtkIdType NumberOfPointsAdded;
+  vtkIdType NumberOfCoefficientsSolved;
   int GridSizeUsed[3];
   double ModelBoundsUsed[6];
+  bool Incremental;
   bool FunctionOnly;
 
 private:

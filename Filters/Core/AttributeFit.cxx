@@ -300,7 +300,7 @@ private:
     LevelReport report;
     const double work = static_cast<double>(bricks.numberOfActiveBricks());
     solveSystem(
-      system, bricks, iterations, Tolerance, StoppingRule::RelativeResidual, this->Threads,
+      system, bricks, iterations, Tolerance, StoppingRule::RelativeResidual, 0, this->Threads,
       [&](double share)
       {
         return !this->Progress ||

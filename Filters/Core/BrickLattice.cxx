@@ -136,14 +136,20 @@ void BrickLattice<Dim>::activateAround(const Index<Dim>& cell)
       {
         mask &= bits[a][static_cast<std::size_t>(brick[a] - first[a])];
       }
-      std::int32_t& id = this->Map[this->flatBrick(brick)];
-      if (id == Absent)
-      {
-        id = static_cast<std::int32_t>(this->Marks.size());
-        this->Marks.push_back(0);
-      }
-      this->Marks[static_cast<std::size_t>(id)] |= mask;
+      this->activate(brick, mask);
     });
+}
+
+template <int Dim>
+void BrickLattice<Dim>::activate(const Index<Dim>& brick, std::uint64_t mask)
+{
+  std::int32_t& id = this->Map[this->flatBrick(brick)];
+  if (id == Absent)
+  {
+    id = static_cast<std::int32_t>(this->Marks.size());
+    this->Marks.push_back(0);
+  }
+  this->Marks[static_cast<std::size_t>(id)] |= mask;
 }
 
 template <int Dim>
@@ -183,17 +189,24 @@ void BrickLattice<Dim>::storeAroundActive()
 }
 
 template <int Dim>
+void BrickLattice<Dim>::bricksForRefinement(
+  const Index<Dim>& finer, Index<Dim>& first, Index<Dim>& last) const
+{
+  // Fine coefficients 4b .. 4b + 3 read the coarse ones 2b .. 2b + 3.
+  for (std::size_t a = 0; a < Dim; ++a)
+  {
+    first[a] = std::min(2 * finer[a] / BrickWidth, this->BrickCount[a] - 1);
+    last[a] = std::min((2 * finer[a] + 3) / BrickWidth, this->BrickCount[a] - 1);
+  }
+}
+
+template <int Dim>
 void BrickLattice<Dim>::storeForRefinement(const BrickLattice& finer)
 {
   for (const Index<Dim>& brick : finer.Position)
   {
-    // Fine coefficients 4b .. 4b + 3 read the coarse ones 2b .. 2b + 3.
     Index<Dim> first, last;
-    for (int a = 0; a < Dim; ++a)
-    {
-      first[a] = std::min(2 * brick[a] / BrickWidth, this->BrickCount[a] - 1);
-      last[a] = std::min((2 * brick[a] + 3) / BrickWidth, this->BrickCount[a] - 1);
-    }
+    this->bricksForRefinement(brick, first, last);
     forBox<Dim>(first, last,
       [this](const Index<Dim>& coarse)
       {
@@ -301,6 +314,32 @@ std::int64_t BrickLattice<Dim>::numberOfActiveCoefficients() const
 template <int Dim>
 void BrickLattice<Dim>::refineFrom(const BrickLattice& coarser, int threads)
 {
+  this->refine(coarser, coarser.Coefficients, {}, threads, this->Coefficients);
+}
+
+template <int Dim>
+std::vector<char> BrickLattice<Dim>::readers(
+  const BrickLattice& coarser, const std::vector<char>& marked) const
+{
+  std::vector<char> reads(this->Position.size(), 0);
+  for (std::size_t b = 0; b < reads.size(); ++b)
+  {
+    Index<Dim> first, last;
+    coarser.bricksForRefinement(this->Position[b], first, last);
+    forBox<Dim>(first, last,
+      [&](const Index<Dim>& brick)
+      {
+        const std::int32_t id = coarser.brickAt(brick);
+        reads[b] |= static_cast<char>(id != Absent && marked[static_cast<std::size_t>(id)] != 0);
+      });
+  }
+  return reads;
+}
+
+template <int Dim>
+void BrickLattice<Dim>::refine(const BrickLattice& coarser, const BrickValues& coarse,
+  const std::vector<char>& marked, int threads, BrickValues& fine) const
+{
   // Coarse coefficients 2b .. 2b + 3 of an axis give the four fine ones of brick b.
   const auto refineAxis = [](const float* in, float* out, int stride, int before, int after)
   {
@@ -320,6 +359,10 @@ void BrickLattice<Dim>::refineFrom(const BrickLattice& coarser, int threads)
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (std::int32_t b = 0; b < this->numberOfBricks(); ++b)
   {
+    if (!marked.empty() && marked[static_cast<std::size_t>(b)] == 0)
+    {
+      continue;
+    }
     const Index<Dim>& brick = this->position(b);
     // What it reads lies in no more than two bricks an axis.
     Index<Dim> low{};
@@ -346,9 +389,8 @@ void BrickLattice<Dim>::refineFrom(const BrickLattice& coarser, int threads)
         at[a] += static_cast<std::int64_t>(child >> a & 1);
       }
       const std::int32_t id = coarser.brickAt(at);
-      from[child] = id == Absent
-        ? nullptr
-        : coarser.Coefficients.data() + static_cast<std::int64_t>(id) * BrickSize<Dim>;
+      from[child] =
+        id == Absent ? nullptr : coarse.data() + static_cast<std::int64_t>(id) * BrickSize<Dim>;
     }
     float read[BrickSize<Dim>];
     for (int k = 0; k < BrickSize<Dim>; ++k)
@@ -363,7 +405,7 @@ void BrickLattice<Dim>::refineFrom(const BrickLattice& coarser, int threads)
       read[k] = from[static_cast<std::size_t>(child)][at];
     }
     float first[BrickSize<Dim>];
-    float* out = this->Coefficients.data() + static_cast<std::int64_t>(b) * BrickSize<Dim>;
+    float* out = fine.data() + static_cast<std::int64_t>(b) * BrickSize<Dim>;
     refineAxis(read, first, 1, 1, BrickSize<Dim> / 4);
     if (Dim == 2)
     {
@@ -375,6 +417,37 @@ void BrickLattice<Dim>::refineFrom(const BrickLattice& coarser, int threads)
       refineAxis(read, out, 16, 16, 1);
     }
   }
+}
+
+template <int Dim>
+int BrickLattice<Dim>::countActive(const Index<Dim>& cell) const
+{
+  std::size_t count = 0;
+  Index<Dim> first, last;
+  for (std::size_t a = 0; a < Dim; ++a)
+  {
+    first[a] = cell[a] / BrickWidth;
+    last[a] = (cell[a] + Order - 1) / BrickWidth;
+  }
+  forBox<Dim>(first, last,
+    [&](const Index<Dim>& brick)
+    {
+      const std::int32_t id = this->brickAt(brick);
+      if (id == Absent || id >= this->ActiveCount)
+      {
+        return;
+      }
+      std::uint64_t mask = this->activeMask(id);
+      for (std::size_t a = 0; a < Dim; ++a)
+      {
+        const std::int64_t from = std::max<std::int64_t>(cell[a] - brick[a] * BrickWidth, 0);
+        const std::int64_t to =
+          std::min<std::int64_t>(cell[a] + Order - 1 - brick[a] * BrickWidth, BrickWidth - 1);
+        mask &= SlabTable<Dim>::instance().Bits[a][from][to];
+      }
+      count += std::bitset<64>(mask).count();
+    });
+  return static_cast<int>(count);
 }
 
 template <int Dim>

@@ -52,6 +52,9 @@ public:
   /// Marks the coefficients of all cells within one cell of @a cell as active.
   void activateAround(const Index<Dim>& cell);
 
+  /// Marks coefficients of one brick as active.
+  void activate(const Index<Dim>& brick, std::uint64_t mask);
+
   /// Adds the bricks that complete the cells around active ones.
   void storeAroundActive();
 
@@ -101,11 +104,28 @@ public:
   /// Fills all stored bricks with the exact knot refinement of the coarser lattice.
   void refineFrom(const BrickLattice& coarser, int threads);
 
+  /// The refinement of other coefficients of the coarser lattice.
+  ///
+  /// @param coarse  BrickSize values per brick of the coarser lattice
+  /// @param marked  one per brick: whether to refine it; empty: all
+  /// @param fine    as many values per brick; those of other bricks stay
+  void refine(const BrickLattice& coarser, const BrickValues& coarse,
+    const std::vector<char>& marked, int threads, BrickValues& fine) const;
+
+  /// One per brick: whether its refinement reads a marked brick of the coarser lattice.
+  std::vector<char> readers(const BrickLattice& coarser, const std::vector<char>& marked) const;
+
+  /// How many of the BrickSize coefficients of a knot cell are active.
+  int countActive(const Index<Dim>& cell) const;
+
   /// Whether all coefficients of a knot cell are stored.
   bool covers(const Index<Dim>& cell) const;
 
 private:
   void findNeighbours(int threads);
+
+  /// The bricks, from first to last, that the refinement to a finer lattice's brick reads.
+  void bricksForRefinement(const Index<Dim>& finer, Index<Dim>& first, Index<Dim>& last) const;
 
   std::size_t flatBrick(const Index<Dim>& brick) const
   {

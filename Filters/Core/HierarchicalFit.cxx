@@ -56,31 +56,7 @@ Sum sumOverValues(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
     });
 }
 
-/// How far the points miss the zero set.
-struct Misses
-{
-  double Distances = 0; ///< squares, of those with normals
-  double Oriented = 0;  ///< number of these
-  double Values = 0;    ///< squares of f, but for extra rows
-  double Points = 0;    ///< number of these
-  double Largest = 0;   ///< |f| of these
-
-  Misses& operator+=(const Misses& other)
-  {
-    this->Distances += other.Distances;
-    this->Oriented += other.Oriented;
-    this->Values += other.Values;
-    this->Points += other.Points;
-    this->Largest = std::max(this->Largest, other.Largest);
-    return *this;
-  }
-
-  /// The root mean square distance.
-  double noise() const
-  {
-    return this->Oriented > 0 ? std::sqrt(this->Distances / this->Oriented) : 0;
-  }
-};
+}
 
 template <int Dim>
 Misses missesOf(
@@ -106,6 +82,13 @@ Misses missesOf(
     });
 }
 
+bool isNoise(double noise, double spacing, const std::function<double()>& noiseBefore)
+{
+  return noise > NoiseGate * spacing && noise > NoiseFall * noiseBefore();
+}
+
+namespace
+{
 /// The smoothing length that predicts the normals of held-out points best.
 template <int Dim>
 double validatedSmoothing(const std::vector<Level<Dim>>& levels,
@@ -185,13 +168,14 @@ double validatedSmoothing(const std::vector<Level<Dim>>& levels,
 
 template <int Dim>
 HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInput<Dim> input,
-  const HierarchicalOptions& options, const ProgressCallback& progress)
+  const HierarchicalOptions& options, const ProgressCallback& progress,
+  std::vector<Level<Dim>>* usedLevels)
 {
   const int threads = resolveThreads(options.Threads);
   HierarchicalResult<Dim> result;
   Samples<Dim> samples = sortedSamples(lattice, input, threads);
   input = {};
-  const std::vector<Level<Dim>> levels = makeLevels(lattice, std::move(samples), options, threads);
+  std::vector<Level<Dim>> levels = makeLevels(lattice, std::move(samples), options, threads);
   std::vector<BrickLattice<Dim>> bricks = makeBricks(levels, threads);
 
   const auto solveAndReport = [&](std::size_t l)
@@ -215,6 +199,7 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
   {
     --gate;
   }
+  result.DeterminedLevels = gate;
   std::size_t next = 0;
   Misses misses;
   result.SmoothingLength = std::max(options.SmoothingLength, 0.0);
@@ -230,14 +215,12 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
     const std::size_t last = gate - 1;
     misses = missesOf(levels[last], bricks[last], points, threads);
     result.Noise = misses.noise();
-    if (result.Noise > NoiseGate * levels[last].Grid.Spacing.mean())
+    const auto before = [&] {
+      return last > 0 ? missesOf(levels[last - 1], bricks[last - 1], points, threads).noise() : 0;
+    };
+    if (isNoise(result.Noise, levels[last].Grid.Spacing.mean(), before))
     {
-      const double before =
-        last > 0 ? missesOf(levels[last - 1], bricks[last - 1], points, threads).noise() : 0;
-      if (result.Noise > NoiseFall * before)
-      {
-        result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
-      }
+      result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
     }
     if (result.SmoothingLength > 0)
     {
@@ -261,11 +244,17 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
   finest.AverageError = misses.Points > 0 ? misses.Values / misses.Points : 0;
   finest.MaximumError = misses.Largest;
   result.Function = std::make_shared<const BrickSpline<Dim>>(std::move(bricks));
+  if (usedLevels)
+  {
+    *usedLevels = std::move(levels);
+  }
   return result;
 }
 
-template HierarchicalResult<2> fitHierarchical<2>(
-  const Lattice<2>&, HermiteInput<2>, const HierarchicalOptions&, const ProgressCallback&);
-template HierarchicalResult<3> fitHierarchical<3>(
-  const Lattice<3>&, HermiteInput<3>, const HierarchicalOptions&, const ProgressCallback&);
+template Misses missesOf<2>(const Level<2>&, const BrickLattice<2>&, const Samples<2>&, int);
+template HierarchicalResult<2> fitHierarchical<2>(const Lattice<2>&, HermiteInput<2>,
+  const HierarchicalOptions&, const ProgressCallback&, std::vector<Level<2>>*);
+template Misses missesOf<3>(const Level<3>&, const BrickLattice<3>&, const Samples<3>&, int);
+template HierarchicalResult<3> fitHierarchical<3>(const Lattice<3>&, HermiteInput<3>,
+  const HierarchicalOptions&, const ProgressCallback&, std::vector<Level<3>>*);
 }

@@ -15,6 +15,9 @@
 #include "BrickSpline.h"
 #include "HierarchyLevel.h"
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -30,12 +33,67 @@ struct HierarchicalResult
   /// determine; 0 if they are too sparse for any, or a smoothing length was given.
   double Noise = 0;
   double SmoothingLength = 0; ///< as used
+  /// Levels, from the coarsest, that the points alone determine; 0 also if a length was given.
+  std::size_t DeterminedLevels = 0;
+  /// Points that were added to an earlier fit; 0 if this is a fit of its own.
+  std::int64_t NumberOfPointsAdded = 0;
+
+  /// Coefficients that were solved for, on all levels.
+  std::int64_t numberOfCoefficientsSolved() const
+  {
+    std::int64_t n = 0;
+    for (const LevelReport& report : this->Reports)
+    {
+      n += report.NumberOfActiveCoefficients;
+    }
+    return n;
+  }
 };
 
-/// @param lattice  the finest lattice
+/// How far the points miss the zero set.
+struct Misses
+{
+  double Distances = 0; ///< squares, of those with normals
+  double Oriented = 0;  ///< number of these
+  double Values = 0;    ///< squares of f, but for extra rows
+  double Points = 0;    ///< number of these
+  double Largest = 0;   ///< |f| of these
+
+  Misses& operator+=(const Misses& other)
+  {
+    this->Distances += other.Distances;
+    this->Oriented += other.Oriented;
+    this->Values += other.Values;
+    this->Points += other.Points;
+    this->Largest = std::max(this->Largest, other.Largest);
+    return *this;
+  }
+
+  /// The root mean square distance.
+  double noise() const
+  {
+    return this->Oriented > 0 ? std::sqrt(this->Distances / this->Oriented) : 0;
+  }
+};
+
+/// By a level that covers the points.
+template <int Dim>
+Misses missesOf(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Samples<Dim>& points, int threads);
+
+/// Whether it is noise that points miss the surface of a level by, and no detail that its lattice
+/// cannot follow.
+///
+/// @param noiseBefore  by how much they miss that of the coarser level, 0 without; asked if it
+/// counts
+bool isNoise(double noise, double spacing, const std::function<double()>& noiseBefore);
+
+/// @param lattice     the finest lattice
+/// @param usedLevels  if given, the levels with their data, unless the fit is aborted
 template <int Dim>
 HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInput<Dim> input,
-  const HierarchicalOptions& options, const ProgressCallback& progress = {});
+  const HierarchicalOptions& options, const ProgressCallback& progress = {},
+  std::vector<Level<Dim>>* usedLevels = nullptr);
 }
 
 #endif

@@ -11,8 +11,6 @@ namespace ipia
 {
 namespace
 {
-/// Coarser levels see clusters in sub-cells, so many halvings of their knot cells.
-constexpr int ClusterBits = 2;
 /// Cells along the longest side up to which a level may be the coarsest.
 constexpr std::int64_t CoarsestCells = 16;
 /// Iterations of a coarsest level of more cells than that, per cell along its longest side: they
@@ -89,10 +87,13 @@ HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bric
   return rows;
 }
 
-template <int Dim>
-double typicalDensity(const BrickLattice<Dim>& bricks, const HermiteRows<Dim>& rows, int threads)
+namespace
 {
-  const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
+/// The sums of the scales of rows.
+template <int Dim>
+RowScales densityScales(
+  const BrickOperator<Dim>& collocation, const HermiteRows<Dim>& rows, int threads)
+{
   BrickValues sums, density;
   collocation.density(sums);
   collocation.evaluate(sums, density);
@@ -112,10 +113,25 @@ double typicalDensity(const BrickLattice<Dim>& bricks, const HermiteRows<Dim>& r
         return sum;
       });
   };
-  const double total = sumOver([](const HermiteRow<Dim>& row, double) { return row.Weight; });
-  const double logarithms = sumOver(
+  RowScales scales;
+  scales.Weight = sumOver([](const HermiteRow<Dim>& row, double) { return row.Weight; });
+  scales.Logarithms = sumOver(
     [](const HermiteRow<Dim>& row, double relative) { return row.Weight * std::log(relative); });
-  return total > 0 ? std::exp(logarithms / total) : 1.0;
+  scales.Rows = static_cast<double>(n);
+  return scales;
+}
+
+/// The density of rows that weighs about 1 in all, their weighted geometric mean.
+double typicalOf(const RowScales& scales)
+{
+  return scales.Weight > 0 ? std::exp(scales.Logarithms / scales.Weight) : 1.0;
+}
+}
+
+template <int Dim>
+double typicalDensity(const BrickLattice<Dim>& bricks, const HermiteRows<Dim>& rows, int threads)
+{
+  return typicalOf(densityScales(BrickOperator<Dim>(bricks, rows, {}, threads), rows, threads));
 }
 
 namespace
@@ -167,13 +183,20 @@ float median(const BulkVector<float>& values, int threads)
 /// Scales the weights so that the rows of an occupied cell weigh about 1 in all, and takes weight
 /// from rows that the coarser prediction misses by far, from those of parts too thin for the
 /// lattice, which the fairing is to hold together, and where the fairing is to count more.
+///
+/// @return the scales of these and the rows elsewhere
 template <int Dim>
-void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, HermiteRows<Dim>& rows,
-  bool predicted, const HierarchicalOptions& options, int threads)
+RowScales weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  HermiteRows<Dim>& rows, const LevelTask<Dim>& task, const HierarchicalOptions& options,
+  int threads)
 {
+  const bool predicted = task.Predicted;
   const BrickOperator<Dim> collocation(bricks, rows, {}, threads);
   const auto n = static_cast<std::int64_t>(rows.Rows.size());
-  const double typical = typicalDensity(bricks, rows, threads);
+  RowScales scales = densityScales(collocation, rows, threads);
+  scales.Weight += task.Elsewhere.Weight;
+  scales.Logarithms += task.Elsewhere.Logarithms;
+  const double typical = typicalOf(scales);
 
   // f and its gradient, in knot spacings, by the coarser level.
   constexpr std::size_t stride = 1 + Dim;
@@ -197,8 +220,17 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
           misses[k] = std::abs(prediction[k * stride] - row.Value);
         }
       });
-    scale = options.RobustFactor * std::max(1.4826 * median(misses, threads), LeastScale * spacing);
+    scales.MedianMiss = n > 0 ? median(misses, threads) : 0.0;
+    if (task.Elsewhere.Rows > 0)
+    {
+      // Not the median of all, which would need all of them, but near it.
+      scales.MedianMiss =
+        (scales.Rows * scales.MedianMiss + task.Elsewhere.Rows * task.Elsewhere.MedianMiss) /
+        (scales.Rows + task.Elsewhere.Rows);
+    }
+    scale = options.RobustFactor * std::max(1.4826 * scales.MedianMiss, LeastScale * spacing);
   }
+  scales.Rows += task.Elsewhere.Rows;
   // On coarse levels every part is thin, and the finer ones need what these know of it.
   const bool mayBeThin = predicted && longestAxis(level.Grid) > 2 * options.DenseCells;
   const auto weigh = [&](HermiteRow<Dim>& row)
@@ -223,6 +255,7 @@ void weighRows(const Level<Dim>& level, const BrickLattice<Dim>& bricks, Hermite
   parallelChunks(n, threads,
     [&](std::int64_t begin, std::int64_t end)
     { std::for_each(rows.Rows.begin() + begin, rows.Rows.begin() + end, weigh); });
+  return scales;
 }
 
 /// Marks what a level solves for: the coefficients around the cells with data.
@@ -245,7 +278,7 @@ void activateBand(const Level<Dim>& level, BrickLattice<Dim>& bricks)
 
 template <int Dim>
 void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
-  double tolerance, StoppingRule rule, int threads, const ProgressCallback& progress,
+  double tolerance, StoppingRule rule, double enough, int threads, const ProgressCallback& progress,
   LevelReport& report)
 {
   BrickValues r, p, q, inverse;
@@ -280,7 +313,7 @@ void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, in
   report.ResidualHistory.assign(1, first > 0 ? 1. : 0.);
   double measure = report.ResidualHistory.front();
   float* c = bricks.coefficients().data();
-  while (report.NumberOfIterations < iterations && rz > 0 && !(measure < tolerance))
+  while (report.NumberOfIterations < iterations && rz > enough && !(measure < tolerance))
   {
     if (progress && !progress(static_cast<double>(report.NumberOfIterations) / iterations))
     {
@@ -333,6 +366,7 @@ void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, in
       });
     ++report.NumberOfIterations;
   }
+  report.ResidualPerRow = rz / std::max(static_cast<double>(report.NumberOfRows), 1.0);
 }
 
 template <int Dim>
@@ -444,6 +478,22 @@ std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels,
     else
     {
       activateBand(levels[l], bricks[l]);
+    }
+  }
+  finishBricks(levels, bricks, threads);
+  return bricks;
+}
+
+template <int Dim>
+void finishBricks(
+  const std::vector<Level<Dim>>& levels, std::vector<BrickLattice<Dim>>& bricks, int threads)
+{
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::size_t k = 0; k < levels.size(); ++k)
+  {
+    const std::size_t l = levels.size() - 1 - k;
+    if (!levels[l].Dense)
+    {
       bricks[l].storeAroundActive();
     }
   }
@@ -455,48 +505,41 @@ std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels,
     }
     bricks[l].allocate(threads);
   }
-  return bricks;
 }
 
 template <int Dim>
-LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
-  std::vector<BrickLattice<Dim>>& bricks, std::size_t l, double smoothing,
-  const HierarchicalOptions& options, int threads, const ProgressCallback& progress)
+LevelReport solveRows(const Level<Dim>& level, BrickLattice<Dim>& bricks,
+  const LevelTask<Dim>& task, const HierarchicalOptions& options, int threads,
+  const ProgressCallback& progress)
 {
-  const auto start = std::chrono::steady_clock::now();
-  const Level<Dim>& level = levels[l];
   threads = level.Data.size() < LeastRowsForThreads ? 1 : threads;
-  const bool finest = l + 1 == levels.size();
-  if (l > 0)
-  {
-    bricks[l].refineFrom(bricks[l - 1], threads);
-  }
-  else
-  {
-    std::fill(bricks[l].coefficients().begin(), bricks[l].coefficients().end(), 0.F);
-  }
-  const double relative = smoothing / level.Grid.Spacing.mean();
+  const bool finest = task.Finest;
+  const double relative = task.SmoothingLength / level.Grid.Spacing.mean();
   const double gradient = level.Dense ? options.DenseGradient
     : finest                          ? options.FinestGradient
                                       : options.BandGradient;
   HermiteRows<Dim> rows =
-    makeRows(level, bricks[l], level.Data.data(), static_cast<std::int64_t>(level.Data.size()),
+    makeRows(level, bricks, level.Data.data(), static_cast<std::int64_t>(level.Data.size()),
       std::max(gradient, std::min(relative, MostSmoothingGradient)), threads);
-  weighRows(level, bricks[l], rows, l > 0, options, threads);
+  LevelReport report;
+  report.Scales = weighRows(level, bricks, rows, task, options, threads);
+  if (task.Start)
+  {
+    bricks.coefficients() = *task.Start;
+  }
   FairingWeights fairing;
   fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : options.BandMembrane);
   fairing.ThinPlate =
     static_cast<float>(std::max(level.Dense ? options.DenseThinPlate : options.BandThinPlate,
       SmoothingThinPlate * relative * relative * relative));
-  const BrickOperator<Dim> system(bricks[l], rows, fairing, threads);
+  const BrickOperator<Dim> system(bricks, rows, fairing, threads);
 
-  LevelReport report;
   report.Spacing = level.Grid.Spacing.maxCoeff();
   report.NumberOfRows = static_cast<std::int64_t>(rows.Rows.size());
-  report.NumberOfActiveCoefficients = bricks[l].numberOfActiveCoefficients();
+  report.NumberOfActiveCoefficients = bricks.numberOfActiveCoefficients();
   int iterations = level.Dense ? options.DenseIterations : options.BandIterations;
   double tolerance = level.Dense ? options.DenseTolerance : options.BandTolerance;
-  if (l == 0 && longestAxis(level.Grid) > CoarsestCells)
+  if (!task.Predicted && longestAxis(level.Grid) > CoarsestCells)
   {
     iterations =
       std::max(iterations, CoarsestIterationsPerCell * static_cast<int>(longestAxis(level.Grid)));
@@ -509,12 +552,44 @@ LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
   {
     tolerance = options.FinestTolerance;
   }
-  solveSystem(system, bricks[l], iterations, tolerance,
-    finest ? options.Rule : StoppingRule::RelativeResidual, threads, progress, report);
+  solveSystem(system, bricks, iterations, tolerance,
+    finest ? options.Rule : StoppingRule::RelativeResidual,
+    task.ResidualPerRow * static_cast<double>(report.NumberOfRows), threads, progress, report);
   if (finest)
   {
     report.Energy = system.energy();
   }
+  return report;
+}
+
+template <int Dim>
+RowScales scalesOf(const Level<Dim>& level, const BrickLattice<Dim>& bricks, int threads)
+{
+  const HermiteRows<Dim> rows = makeRows(
+    level, bricks, level.Data.data(), static_cast<std::int64_t>(level.Data.size()), 0, threads);
+  return densityScales(BrickOperator<Dim>(bricks, rows, {}, threads), rows, threads);
+}
+
+template <int Dim>
+LevelReport solveLevel(const std::vector<Level<Dim>>& levels,
+  std::vector<BrickLattice<Dim>>& bricks, std::size_t l, double smoothing,
+  const HierarchicalOptions& options, int threads, const ProgressCallback& progress)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const int few = levels[l].Data.size() < LeastRowsForThreads ? 1 : threads;
+  if (l > 0)
+  {
+    bricks[l].refineFrom(bricks[l - 1], few);
+  }
+  else
+  {
+    std::fill(bricks[l].coefficients().begin(), bricks[l].coefficients().end(), 0.F);
+  }
+  LevelTask<Dim> task;
+  task.Predicted = l > 0;
+  task.Finest = l + 1 == levels.size();
+  task.SmoothingLength = smoothing;
+  LevelReport report = solveRows(levels[l], bricks[l], task, options, threads, progress);
   report.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }
@@ -543,9 +618,13 @@ template HermiteRows<2> makeRows<2>(
   const Level<2>&, const BrickLattice<2>&, const Sample<2>*, std::int64_t, double, int);
 template double typicalDensity<2>(const BrickLattice<2>&, const HermiteRows<2>&, int);
 template void solveSystem<2>(const BrickOperator<2>&, BrickLattice<2>&, int, double, StoppingRule,
-  int, const ProgressCallback&, LevelReport&);
+  double, int, const ProgressCallback&, LevelReport&);
+template void finishBricks<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&, int);
 template double trustInSlope<2>(const HermiteRow<2>&, const float*);
 template double occupiedCells<2>(const Level<2>&, int);
+template LevelReport solveRows<2>(const Level<2>&, BrickLattice<2>&, const LevelTask<2>&,
+  const HierarchicalOptions&, int, const ProgressCallback&);
+template RowScales scalesOf<2>(const Level<2>&, const BrickLattice<2>&, int);
 template LevelReport solveLevel<2>(const std::vector<Level<2>>&, std::vector<BrickLattice<2>>&,
   std::size_t, double, const HierarchicalOptions&, int, const ProgressCallback&);
 template void evaluateLevel<2>(
@@ -558,9 +637,13 @@ template HermiteRows<3> makeRows<3>(
   const Level<3>&, const BrickLattice<3>&, const Sample<3>*, std::int64_t, double, int);
 template double typicalDensity<3>(const BrickLattice<3>&, const HermiteRows<3>&, int);
 template void solveSystem<3>(const BrickOperator<3>&, BrickLattice<3>&, int, double, StoppingRule,
-  int, const ProgressCallback&, LevelReport&);
+  double, int, const ProgressCallback&, LevelReport&);
+template void finishBricks<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&, int);
 template double trustInSlope<3>(const HermiteRow<3>&, const float*);
 template double occupiedCells<3>(const Level<3>&, int);
+template LevelReport solveRows<3>(const Level<3>&, BrickLattice<3>&, const LevelTask<3>&,
+  const HierarchicalOptions&, int, const ProgressCallback&);
+template RowScales scalesOf<3>(const Level<3>&, const BrickLattice<3>&, int);
 template LevelReport solveLevel<3>(const std::vector<Level<3>>&, std::vector<BrickLattice<3>>&,
   std::size_t, double, const HierarchicalOptions&, int, const ProgressCallback&);
 template void evaluateLevel<3>(

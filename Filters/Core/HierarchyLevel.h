@@ -45,15 +45,27 @@ struct HierarchicalOptions
   int Threads = 0;
 };
 
+/// What the weights of the rows of a level follow from, a sum or mean over all of them.
+struct RowScales
+{
+  double Weight = 0;     ///< sum of the weights as given
+  double Logarithms = 0; ///< sum of weight times logarithm of the density of rows
+  double Rows = 0;       ///< number of rows
+  double MedianMiss = 0; ///< median of |f - v| by the coarser level
+};
+
 /// What one level did.
 struct LevelReport
 {
+  RowScales Scales;
   double Spacing = 0;
   std::int64_t NumberOfRows = 0;
   std::int64_t NumberOfActiveCoefficients = 0;
   int NumberOfIterations = 0;
   /// The preconditioned residual before the first and after each iteration, relative to the first.
   std::vector<double> ResidualHistory;
+  /// The square of the last of these, not relative, by the number of rows.
+  double ResidualPerRow = 0;
   /// sum_k w_k r_k^2 over all rows, value and gradient, with the weights of the level.
   double Energy = 0;
   double AverageError = 0; ///< E_ave, mean of f^2 over the points; finest level only, as Energy
@@ -116,6 +128,9 @@ template <int Dim>
 std::vector<Level<Dim>> makeLevels(const Lattice<Dim>& lattice, Samples<Dim> points,
   const HierarchicalOptions& options, int threads);
 
+/// Coarser levels see clusters in sub-cells, so many halvings of their knot cells.
+constexpr int ClusterBits = 2;
+
 /// What a level sees of the data of a finer one.
 template <int Dim>
 Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening, int threads);
@@ -123,6 +138,11 @@ Samples<Dim> coarserData(const Samples<Dim>& finer, int coarsening, int threads)
 /// The bands of the levels, zero.
 template <int Dim>
 std::vector<BrickLattice<Dim>> makeBricks(const std::vector<Level<Dim>>& levels, int threads);
+
+/// Adds to bands, of which the active coefficients are marked, what these read; zero.
+template <int Dim>
+void finishBricks(
+  const std::vector<Level<Dim>>& levels, std::vector<BrickLattice<Dim>>& bricks, int threads);
 
 /// Cells along the longest side.
 template <int Dim>
@@ -161,16 +181,39 @@ HermiteRows<Dim> makeRows(const Level<Dim>& level, const BrickLattice<Dim>& bric
 template <int Dim>
 double typicalDensity(const BrickLattice<Dim>& bricks, const HermiteRows<Dim>& rows, int threads);
 
-/// Conjugate gradients with the diagonal as preconditioner, on the active coefficients; adds what
-/// they did to @a report.
+/// Conjugate gradients with the diagonal as preconditioner, on the active coefficients, until the
+/// square of the residual is at most @a enough or the other limits are met; adds what they did to
+/// @a report.
 template <int Dim>
 void solveSystem(const BrickOperator<Dim>& system, BrickLattice<Dim>& bricks, int iterations,
-  double tolerance, StoppingRule rule, int threads, const ProgressCallback& progress,
+  double tolerance, StoppingRule rule, double enough, int threads, const ProgressCallback& progress,
   LevelReport& report);
 
 /// Number of knot cells with data.
 template <int Dim>
 double occupiedCells(const Level<Dim>& level, int threads);
+
+/// How a level is solved, or a part of it.
+template <int Dim>
+struct LevelTask
+{
+  bool Predicted;         ///< the coefficients at first are the prediction of a coarser level
+  bool Finest;            ///< of the hierarchy
+  double SmoothingLength; ///< see HierarchicalOptions; 0: none
+  const BrickValues* Start = nullptr; ///< where the solution starts if not from the prediction
+  RowScales Elsewhere;                ///< of the rows that do not take part
+  double ResidualPerRow = 0;          ///< the iteration ends when it is no larger
+};
+
+/// Solves for the active coefficients with the rows of the level's data.
+template <int Dim>
+LevelReport solveRows(const Level<Dim>& level, BrickLattice<Dim>& bricks,
+  const LevelTask<Dim>& task, const HierarchicalOptions& options, int threads,
+  const ProgressCallback& progress = {});
+
+/// The scales of the rows of the level's data alone, but for their misses.
+template <int Dim>
+RowScales scalesOf(const Level<Dim>& level, const BrickLattice<Dim>& bricks, int threads);
 
 /// Solves level @a l from its predecessor.
 ///

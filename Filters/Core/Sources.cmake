@@ -2,7 +2,7 @@
 foreach (name IN ITEMS
     AttributeFit AttributeSpline AutomaticFairing AutomaticLattice BSplineBasis BrickLattice BrickOperator BrickSpline
     CollocationOperator ConstraintRows FairingIteration FairingSystem FarField HierarchicalFit HierarchyLevel
-    ImplicitFit ImplicitSpline KnotRefinement LeastSquaresSolver Oscillation Parametrization PointSamples
+    ImplicitFit ImplicitSpline IncrementalFit KnotRefinement LeastSquaresSolver Oscillation Parametrization PointSamples
     RationalOperator RationalSolver RowBatches TensorSpline TouchedCoefficients)
   list(APPEND ipia_core_sources "${CMAKE_CURRENT_LIST_DIR}/${name}.cxx")
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")

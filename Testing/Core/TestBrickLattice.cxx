@@ -125,6 +125,70 @@ TYPED_TEST(BrickLatticeTest, RefinesAsTheDenseLatticeDoes)
   }
 }
 
+TYPED_TEST(BrickLatticeTest, CountsTheActiveCoefficientsOfACell)
+{
+  constexpr int Dim = TypeParam::value;
+  BrickLattice<Dim> bricks(unevenLattice<Dim>(24));
+  Index<Dim> cell;
+  cell.fill(9);
+  bricks.activateAround(cell); // coefficients 8 .. 13 of each axis
+  Index<Dim> corner{};
+  bricks.activate(corner, 1); // and coefficient 0 of all axes
+  bricks.storeAroundActive();
+  bricks.allocate();
+  for (std::int64_t at = 0; at < 18; ++at)
+  {
+    cell.fill(at);
+    std::int64_t onAxis = 0;
+    for (std::int64_t i = at; i < at + Order; ++i)
+    {
+      onAxis += i >= 8 && i <= 13;
+    }
+    const std::int64_t expected = (Dim == 2 ? 1 : onAxis) * onAxis * onAxis + (at == 0);
+    EXPECT_EQ(bricks.countActive(cell), expected) << "cell " << at;
+  }
+}
+
+TYPED_TEST(BrickLatticeTest, RefinesAgainOnlyWhatReadsAMarkedBrick)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> fine = unevenLattice<Dim>(29), coarse = doubled(fine);
+  BrickLattice<Dim> coarseBricks(coarse), fineBricks(fine);
+  coarseBricks.activateAll();
+  coarseBricks.allocate();
+  fineBricks.activateAll();
+  fineBricks.allocate();
+  test::Random random;
+  for (float& c : coarseBricks.coefficients())
+  {
+    c = static_cast<float>(random.uniform(-1, 1));
+  }
+  fineBricks.refineFrom(coarseBricks, 1);
+  BrickValues changed = coarseBricks.coefficients(), again = fineBricks.coefficients();
+  constexpr std::int32_t changedBrick = 1;
+  for (int k = 0; k < BrickSize<Dim>; ++k)
+  {
+    changed[changedBrick * BrickSize<Dim> + k] += 1;
+  }
+  std::vector<char> marked(static_cast<std::size_t>(coarseBricks.numberOfBricks()), 0);
+  marked[changedBrick] = 1;
+  const std::vector<char> readers = fineBricks.readers(coarseBricks, marked);
+  const auto numberOfReaders = std::count(readers.begin(), readers.end(), 1);
+  EXPECT_GT(numberOfReaders, 0);
+  EXPECT_LT(numberOfReaders, fineBricks.numberOfBricks());
+  fineBricks.refine(coarseBricks, changed, readers, 1, again);
+  // As if all had been refined, within the lattice, and that differs from before nowhere else.
+  coarseBricks.coefficients() = changed;
+  const BrickValues before = fineBricks.coefficients();
+  fineBricks.refineFrom(coarseBricks, 1);
+  for (std::int64_t i = 0; i < fine.numberOfCoefficients(); ++i)
+  {
+    const std::size_t at = indexInBricks(fineBricks, i);
+    ASSERT_EQ(again[at], fineBricks.coefficients()[at]) << "coefficient " << i;
+    ASSERT_TRUE(readers[at / BrickSize<Dim>] != 0 || again[at] == before[at]);
+  }
+}
+
 TYPED_TEST(BrickLatticeTest, AssemblesBandsIntoTheSameFunction)
 {
   constexpr int Dim = TypeParam::value;
