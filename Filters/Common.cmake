@@ -1,7 +1,10 @@
 # What all builds have in common: options, where things go, warnings.
+include(CMakeDependentOption)
 option(BUILD_SHARED_LIBS "Build shared libraries" ON)
 option(IPIA_WRAP_PYTHON "Build the Python package ipia" ON)
 option(IPIA_BUILD_TESTING "Build the tests" ON)
+cmake_dependent_option(IPIA_BUILD_CORE_TESTS "With the tests, build those of the core" ON
+  IPIA_BUILD_TESTING OFF)
 option(IPIA_BUILD_EXAMPLES "Build the C++ examples" ON)
 option(IPIA_BUILD_BENCHMARKS "Build the benchmarks (needs Google Benchmark)" OFF)
 option(IPIA_WARNINGS_AS_ERRORS "Treat warnings in this project's own code as errors" OFF)
