@@ -2,6 +2,7 @@
 #include "IPIAFitProblem.h"
 
 #include "Core/AutomaticLattice.h"
+#include "Core/LonePoints.h"
 #include "IPIAControlLattice.h"
 #include "IPIAMemory.h"
 #include "IPIAText.h"
@@ -244,8 +245,8 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
     {
       positions.col(static_cast<Eigen::Index>(k)) = place.toLocal(this->Cloud.Positions[k].data());
     }
-    wanted = (parameters.isClassic() ? ClassicSpacing : HierarchicalSpacing) *
-      pointSpacing(positions, box);
+    wanted = parameters.isClassic() ? ClassicSpacing * pointSpacing(positions, box)
+                                    : HierarchicalSpacing * robustPointSpacing(positions, box);
   }
   const double h = std::min(std::max(wanted, longest / MostSpacings), longest / FewestSpacings);
 

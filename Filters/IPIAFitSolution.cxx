@@ -3,6 +3,7 @@
 
 #include "Core/HierarchicalFit.h"
 #include "Core/Parallel.h"
+#include "IPIAOrientation.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFitter.h"
 
@@ -301,6 +302,8 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
   solution.NumberOfLevels = static_cast<int>(fitted.Reports.size());
   solution.Noise = fitted.Noise;
   solution.SmoothingLength = fitted.SmoothingLength;
+  solution.FlippedNormals = fitted.FlippedNormals;
+  solution.Outliers = fitted.Outliers;
   const LevelReport& finest = fitted.Reports.back();
   solution.Solver.NumberOfIterations = finest.NumberOfIterations;
   solution.Solver.Energy = finest.Energy;
@@ -371,6 +374,12 @@ FitSolution<Dim> solve(
   else
   {
     solveHierarchical(lattice, problem, parameters, offsets, progress, solution);
+  }
+  if (solution.isValid())
+  {
+    const std::string orientation =
+      orientationWarning(problem, *solution.placed(), solution.FlippedNormals);
+    solution.Warning += text(solution.Warning.empty() || orientation.empty() ? "" : " ", orientation);
   }
   // Arrays of float hold f, whose far field is as large as an offset.
   const double largest = std::max({ solution.Solver.Energy, solution.MaximumError,

@@ -29,6 +29,8 @@ struct FitSolution
   int NumberOfLevels = 1;     ///< of the hierarchy
   double Noise = 0;           ///< see HierarchicalResult
   double SmoothingLength = 0; ///< in world units
+  double FlippedNormals = 0;  ///< share of the normals, see HierarchicalResult
+  double Outliers = 0;        ///< share of the points
   std::string Error;          ///< why there is no result; empty otherwise, or if it was aborted
   std::string Warning;        ///< what the user should know about the result
   bool Aborted = false;

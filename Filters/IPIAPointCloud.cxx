@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IPIAPointCloud.h"
 
+#include "IPIARowWeights.h"
 #include "IPIAText.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkAppendPolyData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -81,6 +82,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
                     "needed; its cells are not used.";
     return;
   }
+  std::vector<vtkDataArray*> ofBlocks; // weights, one for each block
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     vtkDataArray* normals = choose(NormalsIndex, blocks[b]);
@@ -106,7 +108,19 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
       vtkDataArray* values = choose(scalar.Index, blocks[b]);
       this->ChosenArrays.push_back(values);
       const std::size_t inFirst = this->ChosenArrays.size() - 1 - b * (1 + std::size(PointScalars));
-      if (values &&
+      const bool ofBlock = scalar.Index == WeightsIndex && isOfBlock(blocks[b], values);
+      if (ofBlock && (values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() != 1))
+      {
+        this->Refusal = text("The field data array of ", scalar.Name, " has ",
+          values->GetNumberOfComponents(), " components and ", values->GetNumberOfTuples(),
+          " tuples; it must have one of each, the weight of all points of its block.");
+        return;
+      }
+      if (ofBlock)
+      {
+        ofBlocks.push_back(values);
+      }
+      else if (values &&
         (values->GetNumberOfComponents() != 1 ||
           values->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints()))
       {
@@ -140,7 +154,11 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
     this->Source = append->GetOutput();
   }
   vtkDataArray* normals = choose(NormalsIndex, this->Source);
-  vtkDataArray* weights = choose(WeightsIndex, this->Source);
+  vtkSmartPointer<vtkDataArray> weights = choose(WeightsIndex, this->Source);
+  if (!ofBlocks.empty())
+  {
+    weights = weightsOfBlocks(blocks, ofBlocks);
+  }
   vtkDataArray* fairing = choose(LocalFairingIndex, this->Source);
   if (!normals)
   {
@@ -210,6 +228,10 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
       this->Bounds[2 * a] = std::min(this->Bounds[2 * a], x[a]);
       this->Bounds[2 * a + 1] = std::max(this->Bounds[2 * a + 1], x[a]);
     }
+  }
+  if (this->UseNormalLengths && anyNormal)
+  {
+    anyWeight = weighByLength(normals, this->Ids.data(), this->Ids.size(), this->Weights);
   }
   if (this->Ids.empty())
   {

@@ -43,6 +43,9 @@ public:
    */
   void gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows);
 
+  /// Whether the lengths of normals count as weights, on gather().
+  bool UseNormalLengths = false;
+
   /// Why nothing can be fitted; empty if all is well.
   std::string Refusal;
 

@@ -129,6 +129,7 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
   , Tolerance(0)
   , StoppingRule(RelativeResidual)
   , StepSize(0)
+  , UseNormalLengths(false)
   , GenerateGradient(false)
   , GenerateSupport(false)
   , OutputScalarType(VTK_FLOAT)
@@ -260,6 +261,7 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
     return;
   }
   this->State->Current = std::make_unique<ipia::FitProblem>();
+  this->State->Current->Cloud.UseNormalLengths = this->UseNormalLengths;
   this->State->Current->Cloud.gather([this](int index, vtkDataObject* data)
     { return this->GetInputArrayToProcess(index, data); },
     points, extraRows);
@@ -368,6 +370,7 @@ void vtkIPIAImplicitFitter::ResetResults()
   this->Oscillation = this->OffsetDistanceUsed = this->WeightStepSizeUsed = 0;
   this->NumberOfLevelsUsed = 0;
   this->NoiseFound = this->SmoothingLengthUsed = 0;
+  this->FlippedNormalsFound = this->OutliersFound = 0;
   std::fill_n(this->GridSizeUsed, 3, 0);
   vtkMath::UninitializeBounds(this->ModelBoundsUsed);
 }
@@ -409,6 +412,8 @@ bool vtkIPIAImplicitFitter::FitInDimension()
   this->NumberOfLevelsUsed = slot->NumberOfLevels;
   this->NoiseFound = slot->Noise;
   this->SmoothingLengthUsed = slot->SmoothingLength;
+  this->FlippedNormalsFound = slot->FlippedNormals;
+  this->OutliersFound = slot->Outliers;
   this->State->Function->SetSpline(slot->placed());
   if (slot->Function)
   {
@@ -434,6 +439,7 @@ bool vtkIPIAImplicitFitter::Fit()
   for (int value : { this->NormalConstraint, this->BasisType, this->OscillationStep,
          this->FairingOrder, this->Solver, this->NumberOfLevels, this->MaximumNumberOfIterations,
          this->StoppingRule, static_cast<int>(this->GenerateSupport), problem.FlatAxis,
+         static_cast<int>(this->UseNormalLengths),
          static_cast<int>(problem.staysInBricks(this->Parameters())) })
   {
     parameters.push_back(value);
@@ -587,11 +593,13 @@ void vtkIPIAImplicitFitter::WriteFittedPoints(vtkPolyData* output)
   vtkNew<vtkPoints> points;
   points->SetDataType(cloud.Source->GetPoints()->GetDataType());
   points->SetNumberOfPoints(n);
-  vtkNew<vtkDoubleArray> residual, distance;
+  vtkNew<vtkDoubleArray> residual, distance, agreement;
   residual->SetName("Residual");
   distance->SetName("Distance");
+  agreement->SetName("NormalAgreement");
   residual->SetNumberOfTuples(n);
   distance->SetNumberOfTuples(n);
+  agreement->SetNumberOfTuples(n);
   for (vtkIdType i = 0; i < n; ++i)
   {
     const auto k = static_cast<std::size_t>(i);
@@ -611,6 +619,8 @@ void vtkIPIAImplicitFitter::WriteFittedPoints(vtkPolyData* output)
         residual->SetValue(i, f);
         // Where f is flat there is no distance to tell; f itself is the best guess.
         distance->SetValue(i, slope > 0 ? f / slope : f);
+        const double along = vtkMath::Dot(cloud.Normals[static_cast<std::size_t>(i)].data(), g);
+        agreement->SetValue(i, slope > 0 ? along / slope : 0.0);
       }
     });
   output->SetPoints(points);
@@ -620,6 +630,7 @@ void vtkIPIAImplicitFitter::WriteFittedPoints(vtkPolyData* output)
   output->GetPointData()->CopyData(cloud.Source->GetPointData(), from, to);
   output->GetPointData()->AddArray(residual);
   output->GetPointData()->AddArray(distance);
+  output->GetPointData()->AddArray(agreement);
   vtkNew<vtkCellArray> vertices;
   vertices->InsertNextCell(to);
   output->SetVerts(vertices);
@@ -638,6 +649,8 @@ void vtkIPIAImplicitFitter::WriteResults(vtkFieldData* field) const
   addResult(field, "NumberOfLevelsUsed", this->NumberOfLevelsUsed);
   addResult(field, "NoiseFound", this->NoiseFound);
   addResult(field, "SmoothingLengthUsed", this->SmoothingLengthUsed);
+  addResult(field, "FlippedNormalsFound", this->FlippedNormalsFound);
+  addResult(field, "OutliersFound", this->OutliersFound);
   vtkNew<vtkIntArray> grid;
   grid->SetName("GridSizeUsed");
   grid->SetNumberOfComponents(3);
@@ -780,6 +793,7 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "StoppingRule: " << this->StoppingRule << "\n";
   os << indent << "StepSize: " << this->StepSize << "\n";
+  os << indent << "UseNormalLengths: " << this->UseNormalLengths << "\n";
   os << indent << "GenerateGradient: " << this->GenerateGradient << "\n";
   os << indent << "GenerateSupport: " << this->GenerateSupport << "\n";
   os << indent << "OutputScalarType: " << this->OutputScalarType << "\n";
@@ -794,6 +808,8 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfLevelsUsed: " << this->NumberOfLevelsUsed << "\n";
   os << indent << "NoiseFound: " << this->NoiseFound << "\n";
   os << indent << "SmoothingLengthUsed: " << this->SmoothingLengthUsed << "\n";
+  os << indent << "FlippedNormalsFound: " << this->FlippedNormalsFound << "\n";
+  os << indent << "OutliersFound: " << this->OutliersFound << "\n";
   os << indent << "GridSizeUsed: " << triple(this->GridSizeUsed) << "\n";
   os << indent << "ModelBoundsUsed: " << bounds(this->ModelBoundsUsed) << "\n";
 }

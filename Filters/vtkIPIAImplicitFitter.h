@@ -403,6 +403,17 @@ public:
 
   ///@{
   /**
+   * Multiply each point's row weight by the length of its normal over the median of these lengths:
+   * its confidence, as some scanners and normal estimators give it. A point without a normal then
+   * has none. Default off: lengths do not count.
+   */
+  vtkSetMacro(UseNormalLengths, bool);
+  vtkGetMacro(UseNormalLengths, bool);
+  vtkBooleanMacro(UseNormalLengths, bool);
+  ///@}
+
+  ///@{
+  /**
    * Add the exact gradient of f to output 0 as `Gradient`. Default off.
    */
   vtkSetMacro(GenerateGradient, bool);
@@ -460,6 +471,8 @@ public:
   vtkGetMacro(NumberOfLevelsUsed, int);
   vtkGetMacro(NoiseFound, double);
   vtkGetMacro(SmoothingLengthUsed, double);
+  vtkGetMacro(FlippedNormalsFound, double);
+  vtkGetMacro(OutliersFound, double);
   vtkGetVector3Macro(GridSizeUsed, int);
   vtkGetVector6Macro(ModelBoundsUsed, double);
   ///@}
@@ -515,6 +528,7 @@ protected:
   double Tolerance;
   int StoppingRule;
   double StepSize;
+  bool UseNormalLengths;
   bool GenerateGradient;
   bool GenerateSupport;
   int OutputScalarType;
@@ -530,6 +544,8 @@ protected:
   int NumberOfLevelsUsed;
   double NoiseFound;
   double SmoothingLengthUsed;
+  double FlippedNormalsFound;
+  double OutliersFound;
   int GridSizeUsed[3];
   double ModelBoundsUsed[6];
   bool FunctionOnly;

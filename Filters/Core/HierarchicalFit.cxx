@@ -2,6 +2,7 @@
 #include "HierarchicalFit.h"
 
 #include "Parallel.h"
+#include "SampleChecks.h"
 
 #include <deque>
 
@@ -26,6 +27,10 @@ constexpr int ValidationIterations = 8, MostValidations = 5;
 constexpr double FirstSmoothing = 2.4, ValidationStep = 1.41421356, ValidationSlack = 1.01;
 /// Squared errors of predicted normals are cut here, so that outliers do not decide.
 constexpr double MostNormalError = 2;
+/// The fit starts again without faulty samples if they are at least this share of all, and as long
+/// as there are more, but not more often than this.
+constexpr double WorthRepeating = 5e-3;
+constexpr int MostRepetitions = 3;
 /// Samples that f is evaluated at in one go: a bound on memory.
 constexpr std::size_t SamplesAtATime = 1 << 20;
 
@@ -50,23 +55,112 @@ void forValues(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
   }
 }
 
-/// The root mean square distance of the points from the zero set.
+/// What a level says of the points.
+struct Verdict
+{
+  double Noise = 0; ///< root mean square distance of the points from the zero set
+  std::vector<SampleCheck> Checks;
+};
+
 template <int Dim>
-double noiseOf(
+Verdict verdictOf(
   const Level<Dim>& level, const BrickLattice<Dim>& bricks, const Samples<Dim>& points, int threads)
 {
+  Verdict verdict;
+  verdict.Checks.reserve(points.size());
+  const double spacing = level.Grid.Spacing.mean();
   double sum = 0, count = 0;
   forValues(level, bricks, points, threads,
     [&](const Sample<Dim>& sample, double f, const Point<Dim>& gradient)
     {
+      const double slope = gradient.norm();
+      const double distance = f / std::max(slope, LeastSlope);
+      SampleCheck check;
+      check.Distance = static_cast<float>(distance / spacing);
       if (sample.HasNormal)
       {
-        const double distance = f / std::max(gradient.norm(), LeastSlope);
         sum += distance * distance;
         ++count;
+        check.Agreement =
+          slope > 0 ? static_cast<float>(gradient.dot(sample.Normal) / slope) : 1.F;
       }
+      verdict.Checks.push_back(check);
     });
-  return count > 0 ? std::sqrt(sum / count) : 0;
+  verdict.Noise = count > 0 ? std::sqrt(sum / count) : 0;
+  return verdict;
+}
+
+/// The finest level that the points alone determine, or their number if they are too sparse for
+/// any.
+template <int Dim>
+std::size_t determinedLevel(const std::vector<Level<Dim>>& levels)
+{
+  std::size_t found = levels.size();
+  const auto n = static_cast<double>(levels.back().points().size());
+  for (std::size_t l = 0; l < levels.size(); ++l)
+  {
+    if (n >= PointsPerDeterminedCell * occupiedCells(levels[l]))
+    {
+      found = l;
+    }
+  }
+  return found;
+}
+
+/// The points of a fit with what was found wrong with them.
+template <int Dim>
+struct JudgedPoints
+{
+  Samples<Dim> Good;
+  std::vector<char> Turned; ///< for each of Good, whether its normal was; empty: none
+  Samples<Dim> Outliers;    ///< left out
+  double Oriented = 0;      ///< number of points with normals at first
+  double Flipped = 0;       ///< of them with the wrong sign
+};
+
+/// Takes outliers out, and turns the normals that are flipped: with the others right, those that
+/// were turned by mistake are turned back in the next round.
+template <int Dim>
+void correct(const SampleFaults& faults, JudgedPoints<Dim>& points)
+{
+  points.Turned.resize(points.Good.size(), 0);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < points.Good.size(); ++k)
+  {
+    Sample<Dim> sample = points.Good[k];
+    char turned = points.Turned[k];
+    if (faults.Faults[k] == SampleFault::Outlier)
+    {
+      points.Oriented -= sample.HasNormal;
+      points.Flipped -= turned;
+      points.Outliers.push_back(sample);
+      continue;
+    }
+    if (faults.Faults[k] == SampleFault::Flipped)
+    {
+      turned = turned == 0;
+      points.Flipped += turned ? 1 : -1;
+      sample.Normal = -sample.Normal;
+    }
+    points.Turned[kept] = turned;
+    points.Good[kept++] = sample;
+  }
+  points.Good.resize(kept);
+  points.Turned.resize(kept);
+}
+
+/// Takes the normals out that were turned.
+template <int Dim>
+void leaveOutTurned(JudgedPoints<Dim>& points)
+{
+  for (std::size_t k = 0; k < points.Good.size(); ++k)
+  {
+    if (points.Turned[k] != 0)
+    {
+      points.Good[k].Normal.setZero();
+      points.Good[k].HasNormal = false;
+    }
+  }
 }
 
 template <int Dim>
@@ -85,6 +179,21 @@ void reportErrors(
       }
     });
   report.AverageError = count > 0 ? sum / count : 0;
+}
+
+/// Adds samples that were left out to the errors of others.
+template <int Dim>
+void addErrors(const BrickSpline<Dim>& function, const Samples<Dim>& samples, double others,
+  LevelReport& report)
+{
+  double sum = report.AverageError * others;
+  for (const Sample<Dim>& sample : samples)
+  {
+    const double f = function.value(sample.Position.cwiseProduct(function.lattice().Spacing));
+    sum += f * f;
+    report.MaximumError = std::max(report.MaximumError, std::abs(f));
+  }
+  report.AverageError = sum / (others + static_cast<double>(samples.size()));
 }
 
 /// The smoothing length that predicts the normals of held-out points best.
@@ -170,11 +279,24 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
 {
   const int threads = resolveThreads(options.Threads);
   HierarchicalResult<Dim> result;
-  Samples<Dim> samples = sortedSamples(lattice, input, threads);
+  JudgedPoints<Dim> points;
+  points.Good = sortedSamples(lattice, input, threads);
   input = {};
-  const std::vector<Level<Dim>> levels = makeLevels(lattice, std::move(samples), options, threads);
-  std::vector<BrickLattice<Dim>> bricks = makeBricks(levels);
+  for (const Sample<Dim>& sample : points.Good)
+  {
+    points.Oriented += sample.HasNormal;
+  }
 
+  std::vector<Level<Dim>> levels;
+  std::vector<BrickLattice<Dim>> bricks;
+  std::size_t next = 0;
+  const auto start = [&]
+  {
+    levels = makeLevels(lattice, std::move(points.Good), options, threads);
+    bricks = makeBricks(levels);
+    result.Reports.clear();
+    next = 0;
+  };
   const auto solveAndReport = [&](std::size_t l)
   {
     const auto share = [&](double ofLevel)
@@ -188,36 +310,73 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
     return !result.Aborted;
   };
 
-  // The finest level that the points alone determine tells how noisy they are.
-  std::size_t gate = levels.size(), next = 0;
-  const auto n = static_cast<double>(levels.back().points().size());
-  for (std::size_t l = 0; l < levels.size() && options.SmoothingLength < 0; ++l)
-  {
-    if (n >= PointsPerDeterminedCell * occupiedCells(levels[l]))
-    {
-      gate = l;
-    }
-  }
+  // The finest level that the points alone determine tells how noisy they are, and which of them
+  // contradict the others; without these the fit starts again.
   result.SmoothingLength = std::max(options.SmoothingLength, 0.0);
-  if (gate < levels.size())
+  start();
+  std::size_t gate = determinedLevel(levels);
+  const auto takePointsBack = [&]
   {
-    double missBefore = 0;
+    Level<Dim>& finest = levels.back();
+    points.Good = std::move(finest.Unclustered.empty() ? finest.Data : finest.Unclustered);
+  };
+  bool judged = false;
+  for (int round = 0; gate < levels.size(); ++round)
+  {
     for (; next <= gate; ++next)
     {
       if (!solveAndReport(next))
       {
         return result;
       }
-      if (next + 1 >= gate)
-      {
-        missBefore = result.Noise;
-        result.Noise = noiseOf(levels[next], bricks[next], levels.back().points(), threads);
-      }
     }
-    if (result.Noise > NoiseGate * levels[gate].Grid.Spacing.mean() &&
-      result.Noise > NoiseFall * missBefore)
+    const Verdict verdict = verdictOf(levels[gate], bricks[gate], levels.back().points(), threads);
+    result.Noise = verdict.Noise;
+    if (judged)
     {
-      result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
+      break;
+    }
+    const EarlierFaults earlier = round == 0 ? EarlierFaults::None
+      : points.Outliers.empty()              ? EarlierFaults::Flipped
+                                             : EarlierFaults::Outliers;
+    const SampleFaults faults =
+      findFaults(levels.back().points(), verdict.Checks, earlier, threads);
+    const auto n = static_cast<double>(levels.back().points().size());
+    judged = faults.Outliers + faults.Flipped < (round == 0 ? WorthRepeating * n : 1) ||
+      round >= MostRepetitions;
+    if (judged && round == 0)
+    {
+      points.Flipped = faults.Flipped;
+      break;
+    }
+    if (judged && points.Flipped == 0)
+    {
+      break;
+    }
+    takePointsBack();
+    if (judged)
+    {
+      leaveOutTurned(points);
+    }
+    else
+    {
+      correct(faults, points);
+    }
+    start();
+    gate = determinedLevel(levels);
+  }
+  result.FlippedNormals = points.Oriented > 0 ? points.Flipped / points.Oriented : 0;
+  if (gate < levels.size() && options.SmoothingLength < 0)
+  {
+    if (result.Noise > NoiseGate * levels[gate].Grid.Spacing.mean())
+    {
+      const double before = gate > 0
+        ? verdictOf(levels[gate - 1], bricks[gate - 1], levels.back().points(), threads).Noise
+        : 0;
+      if (result.Noise > NoiseFall * before)
+      {
+        result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
+      }
     }
     if (result.SmoothingLength > 0)
     {
@@ -226,6 +385,10 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
       next = 0;
     }
   }
+  else
+  {
+    result.Noise = 0;
+  }
   for (; next < levels.size(); ++next)
   {
     if (!solveAndReport(next))
@@ -233,8 +396,16 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
       return result;
     }
   }
-  reportErrors(levels.back(), bricks.back(), threads, result.Reports.back());
+  LevelReport& finest = result.Reports.back();
+  reportErrors(levels.back(), bricks.back(), threads, finest);
   result.Function = std::make_shared<const BrickSpline<Dim>>(std::move(bricks));
+  if (!points.Outliers.empty())
+  {
+    const auto kept = static_cast<double>(levels.back().points().size()),
+               left = static_cast<double>(points.Outliers.size());
+    result.Outliers = left / (kept + left);
+    addErrors(*result.Function, points.Outliers, kept, finest);
+  }
   return result;
 }
 

@@ -30,6 +30,9 @@ struct HierarchicalResult
   /// determine; 0 if they are too sparse for any, or a smoothing length was given.
   double Noise = 0;
   double SmoothingLength = 0; ///< as used
+  /// Share of the normals that point against the fit and their neighbours.
+  double FlippedNormals = 0;
+  double Outliers = 0; ///< share of the points that were left out, far from what the others agree on
 };
 
 /// @param lattice  the finest lattice

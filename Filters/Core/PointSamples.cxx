@@ -10,37 +10,6 @@ namespace
 /// Positions are multiples of the inverse, in cells.
 constexpr double PositionSteps = 1048576;
 
-template <int Dim>
-std::uint64_t mortonKey(const Index<Dim>& i)
-{
-  std::uint64_t key = 0;
-  for (int a = 0; a < Dim; ++a)
-  {
-    // Spreads the bits of one coordinate with gaps for the others.
-    auto v = static_cast<std::uint64_t>(i[a]);
-    if (Dim == 3)
-    {
-      v &= 0x1fffff;
-      v = (v | v << 32) & 0x1f00000000ffff;
-      v = (v | v << 16) & 0x1f0000ff0000ff;
-      v = (v | v << 8) & 0x100f00f00f00f00f;
-      v = (v | v << 4) & 0x10c30c30c30c30c3;
-      v = (v | v << 2) & 0x1249249249249249;
-    }
-    else
-    {
-      v &= 0xffffffff;
-      v = (v | v << 16) & 0x0000ffff0000ffff;
-      v = (v | v << 8) & 0x00ff00ff00ff00ff;
-      v = (v | v << 4) & 0x0f0f0f0f0f0f0f0f;
-      v = (v | v << 2) & 0x3333333333333333;
-      v = (v | v << 1) & 0x5555555555555555;
-    }
-    key |= v << a;
-  }
-  return key;
-}
-
 /// Sorts a power of two of chunks and merges neighbours until one is left.
 template <typename T>
 void sortOnThreads(std::vector<T>& values, int threads)
@@ -93,6 +62,37 @@ Sample<Dim> meanOf(const Sample<Dim>* begin, const Sample<Dim>* end)
   mean.Fairing = weight > 0 ? static_cast<float>(share * fairing) : 1.F;
   return mean;
 }
+}
+
+template <int Dim>
+std::uint64_t mortonKey(const Index<Dim>& i)
+{
+  std::uint64_t key = 0;
+  for (int a = 0; a < Dim; ++a)
+  {
+    // Spreads the bits of one coordinate with gaps for the others.
+    auto v = static_cast<std::uint64_t>(i[a]);
+    if (Dim == 3)
+    {
+      v &= 0x1fffff;
+      v = (v | v << 32) & 0x1f00000000ffff;
+      v = (v | v << 16) & 0x1f0000ff0000ff;
+      v = (v | v << 8) & 0x100f00f00f00f00f;
+      v = (v | v << 4) & 0x10c30c30c30c30c3;
+      v = (v | v << 2) & 0x1249249249249249;
+    }
+    else
+    {
+      v &= 0xffffffff;
+      v = (v | v << 16) & 0x0000ffff0000ffff;
+      v = (v | v << 8) & 0x00ff00ff00ff00ff;
+      v = (v | v << 4) & 0x0f0f0f0f0f0f0f0f;
+      v = (v | v << 2) & 0x3333333333333333;
+      v = (v | v << 1) & 0x5555555555555555;
+    }
+    key |= v << a;
+  }
+  return key;
 }
 
 template <int Dim>
@@ -183,6 +183,8 @@ Samples<Dim> cluster(const Samples<Dim>& samples, int halvings, int threads)
   return clusters;
 }
 
+template std::uint64_t mortonKey<2>(const Index<2>&);
+template std::uint64_t mortonKey<3>(const Index<3>&);
 template Samples<2> sortedSamples<2>(const Lattice<2>&, const HermiteInput<2>&, int);
 template Samples<3> sortedSamples<3>(const Lattice<3>&, const HermiteInput<3>&, int);
 template Samples<2> cluster<2>(const Samples<2>&, int, int);

@@ -48,6 +48,10 @@ using Samples = std::vector<Sample<Dim>>;
 /// Sub-cells per knot cell of the finest lattice and axis, as a power of two.
 constexpr int SubCellBits = 3;
 
+/// The Morton code of a position in a grid.
+template <int Dim>
+std::uint64_t mortonKey(const Index<Dim>& i);
+
 /// All rows in the Morton order of their sub-cells, which nests those of all coarser lattices.
 template <int Dim>
 Samples<Dim> sortedSamples(
