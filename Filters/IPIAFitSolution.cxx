@@ -379,7 +379,8 @@ FitSolution<Dim> solve(
   {
     const std::string orientation =
       orientationWarning(problem, *solution.placed(), solution.FlippedNormals);
-    solution.Warning += text(solution.Warning.empty() || orientation.empty() ? "" : " ", orientation);
+    solution.Warning +=
+      text(solution.Warning.empty() || orientation.empty() ? "" : " ", orientation);
   }
   // Arrays of float hold f, whose far field is as large as an offset.
   const double largest = std::max({ solution.Solver.Energy, solution.MaximumError,

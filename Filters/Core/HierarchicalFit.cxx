@@ -27,10 +27,11 @@ constexpr int ValidationIterations = 8, MostValidations = 5;
 constexpr double FirstSmoothing = 2.4, ValidationStep = 1.41421356, ValidationSlack = 1.01;
 /// Squared errors of predicted normals are cut here, so that outliers do not decide.
 constexpr double MostNormalError = 2;
-/// The fit starts again without faulty samples if they are at least this share of all, and as long
-/// as there are more, but not more often than this.
-constexpr double WorthRepeating = 5e-3;
+/// The fit starts again without faulty samples as long as there are some, but not more often.
 constexpr int MostRepetitions = 3;
+/// Turned normals show fewer others that are flipped, at most this share of those turned before:
+/// where noise mixes the sides of thin parts it does not end.
+constexpr double MostNewFlips = 0.3;
 /// Samples that f is evaluated at in one go: a bound on memory.
 constexpr std::size_t SamplesAtATime = 1 << 20;
 
@@ -81,8 +82,7 @@ Verdict verdictOf(
       {
         sum += distance * distance;
         ++count;
-        check.Agreement =
-          slope > 0 ? static_cast<float>(gradient.dot(sample.Normal) / slope) : 1.F;
+        check.Agreement = slope > 0 ? static_cast<float>(gradient.dot(sample.Normal) / slope) : 1.F;
       }
       verdict.Checks.push_back(check);
     });
@@ -149,6 +149,21 @@ void correct(const SampleFaults& faults, JudgedPoints<Dim>& points)
   points.Turned.resize(kept);
 }
 
+/// Turns the normals back.
+template <int Dim>
+void turnBack(JudgedPoints<Dim>& points)
+{
+  for (std::size_t k = 0; k < points.Good.size(); ++k)
+  {
+    if (points.Turned[k] != 0)
+    {
+      points.Good[k].Normal = -points.Good[k].Normal;
+    }
+  }
+  points.Turned.assign(points.Good.size(), 0);
+  points.Flipped = 0;
+}
+
 /// Takes the normals out that were turned.
 template <int Dim>
 void leaveOutTurned(JudgedPoints<Dim>& points)
@@ -183,8 +198,8 @@ void reportErrors(
 
 /// Adds samples that were left out to the errors of others.
 template <int Dim>
-void addErrors(const BrickSpline<Dim>& function, const Samples<Dim>& samples, double others,
-  LevelReport& report)
+void addErrors(
+  const BrickSpline<Dim>& function, const Samples<Dim>& samples, double others, LevelReport& report)
 {
   double sum = report.AverageError * others;
   for (const Sample<Dim>& sample : samples)
@@ -320,7 +335,9 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
     Level<Dim>& finest = levels.back();
     points.Good = std::move(finest.Unclustered.empty() ? finest.Data : finest.Unclustered);
   };
+  EarlierFaults earlier;
   bool judged = false;
+  double turned = 0; // in the round with most of them
   for (int round = 0; gate < levels.size(); ++round)
   {
     for (; next <= gate; ++next)
@@ -336,19 +353,14 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
     {
       break;
     }
-    const EarlierFaults earlier = round == 0 ? EarlierFaults::None
-      : points.Outliers.empty()              ? EarlierFaults::Flipped
-                                             : EarlierFaults::Outliers;
     const SampleFaults faults =
       findFaults(levels.back().points(), verdict.Checks, earlier, threads);
-    const auto n = static_cast<double>(levels.back().points().size());
-    judged = faults.Outliers + faults.Flipped < (round == 0 ? WorthRepeating * n : 1) ||
-      round >= MostRepetitions;
-    if (judged && round == 0)
-    {
-      points.Flipped = faults.Flipped;
-      break;
-    }
+    earlier.NoFlips =
+      earlier.NoFlips || (earlier.Flipped && faults.Flipped > MostNewFlips * turned);
+    earlier.Flipped = !earlier.NoFlips && (earlier.Flipped || faults.Flipped > 0);
+    earlier.Outliers = earlier.Outliers || faults.Outliers > 0;
+    turned = std::max(turned, faults.Flipped);
+    judged = faults.Outliers + faults.Flipped == 0 || round >= MostRepetitions;
     if (judged && points.Flipped == 0)
     {
       break;
@@ -361,6 +373,10 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
     else
     {
       correct(faults, points);
+      if (earlier.NoFlips)
+      {
+        turnBack(points);
+      }
     }
     start();
     gate = determinedLevel(levels);

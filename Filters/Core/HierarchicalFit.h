@@ -32,7 +32,8 @@ struct HierarchicalResult
   double SmoothingLength = 0; ///< as used
   /// Share of the normals that point against the fit and their neighbours.
   double FlippedNormals = 0;
-  double Outliers = 0; ///< share of the points that were left out, far from what the others agree on
+  double Outliers =
+    0; ///< share of the points that were left out, far from what the others agree on
 };
 
 /// @param lattice  the finest lattice

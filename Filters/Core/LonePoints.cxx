@@ -12,7 +12,7 @@ namespace
 /// Side of the cubes in spacings, and the most of them along the longest side: a bound on memory.
 constexpr double CubeSpacings = 2, MostCubes = 160;
 /// Lone points have less than this share of the usual number of neighbours.
-constexpr double LoneShare = 1. / 12;
+constexpr double LoneShare = 1. / 9;
 /// Shares of lone points that matter, and that are an exception.
 constexpr double FewLone = 0.003, ManyLone = 0.2;
 /// The spacing without lone points is smaller, and shows more of them.

@@ -12,7 +12,7 @@ namespace
 constexpr double OutlierSpacings = 1.5, OutlierDeviations = 4, MostOutliers = 0.3;
 /// Where others were left out before, fewer spacings are enough, and so many times the distance
 /// that this share of the samples keeps.
-constexpr double LaterSpacings = 0.1, LaterDistances = 5, LaterShare = 0.9;
+constexpr double LaterSpacings = 0.03, LaterDistances = 5, LaterShare = 0.9;
 /// The deviation of a normal distribution by the median of its absolute values.
 constexpr double DeviationOfMedian = 1.4826;
 /// Neighbours are looked for in blocks, of which an occupied one holds at least so many samples.
@@ -23,12 +23,18 @@ constexpr double WiderBlocks = 4, ManyAccused = 0.15;
 /// A neighbour is beside a sample if its distance from the tangent plane is at most this share of
 /// that from the sample.
 constexpr double TangentShare = 0.4;
-/// A normal that points against the gradient is flipped if the mean of n . m over so many
-/// neighbours at least is below the first of these; where others were found so, or many are
-/// accused, below the second, and any normal below the third.
-constexpr double FewestNeighbours = 4, FlippedVote = -0.3, LaterVote = -0.1, AnyVote = -0.35;
-/// With so large a share of faults all samples are looked at.
-constexpr double ShareOfFaults = 0.005;
+/// A normal that points against the gradient is flipped if the mean of n . m over the neighbours
+/// beside it is below this ...
+constexpr double FlippedVote = -0.3;
+/// ... or, where many are, below the first of these times the size that this mean usually has, and
+/// any other normal below the second. Where chance flips many this is small for all, but not where
+/// noise mixes the sides of thin parts.
+constexpr double AccusedVote = -0.5, AnyVote = -0.7;
+/// Either is beyond so many deviations of the sum that chance alone gives, fewer where others were
+/// corrected before.
+constexpr double VoteDeviations = 3, LaterDeviations = 1;
+/// Smaller shares of outliers and of flipped normals count for none: a few that the fit misjudges.
+constexpr double LeastOutliers = 5e-4, LeastFlipped = 5e-3;
 /// A sample is alone if it has less than this share of the usual number of neighbours, of which
 /// less than the second share lie beside it with about the same normal, n . m at least the third.
 constexpr double AloneShare = 0.1, LikeShare = 0.3, LikeNormal = 0.5;
@@ -41,9 +47,11 @@ struct Neighbours
   double Vote = 0;   ///< ... and their sum of n . m
   double Like = 0;   ///< of them with about the same normal
 
-  bool contradict(double vote) const
+  double meanVote() const { return this->Vote / std::max(this->Beside, 1.0); }
+
+  bool contradict(double vote, double deviations) const
   {
-    return this->Beside >= FewestNeighbours && this->Vote < vote * this->Beside;
+    return this->meanVote() < vote && this->Vote < -deviations * std::sqrt(this->Beside);
   }
 };
 
@@ -69,8 +77,8 @@ public:
           this->Blocks.push_back({ key, k });
         }
       }
-    } while (static_cast<double>(samples.size()) <
-        perBlock * static_cast<double>(this->Blocks.size()) &&
+    } while (
+      static_cast<double>(samples.size()) < perBlock * static_cast<double>(this->Blocks.size()) &&
       this->Blocks.size() > 1);
   }
 
@@ -142,8 +150,8 @@ private:
 /// The distance that a share of the samples keeps.
 double quantile(std::vector<float>& distances, double share)
 {
-  const auto at = distances.begin() +
-    static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size()));
+  const auto at =
+    distances.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size()));
   std::nth_element(distances.begin(), at, distances.end());
   return *at;
 }
@@ -192,35 +200,43 @@ std::vector<Neighbours> neighboursOf(const Samples<Dim>& samples,
   return found;
 }
 
-/// Looks at all samples that are not yet known for outliers or flipped.
+/// Forgets the outliers or the flipped normals that were found.
+void forget(SampleFault fault, double& count, SampleFaults& result)
+{
+  std::replace(result.Faults.begin(), result.Faults.end(), fault, SampleFault::None);
+  count = 0;
+}
+
+/// Looks at all samples that are not known for outliers, also at those that seem flipped.
 template <int Dim>
 void findMoreFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>& checks,
-  EarlierFaults earlier, bool wide, int threads, SampleFaults& result)
+  const EarlierFaults& earlier, bool wide, int threads, SampleFaults& result)
 {
+  const bool outliers = earlier.Outliers || result.Outliers > 0;
+  const bool flipped = earlier.Flipped || result.Flipped > 0;
+  forget(SampleFault::Flipped, result.Flipped, result);
   std::vector<std::size_t> rest;
   for (std::size_t k = 0; k < samples.size(); ++k)
   {
-    if (!samples[k].IsExtra && result.Faults[k] == SampleFault::None)
+    if (!samples[k].IsExtra && result.Faults[k] != SampleFault::Outlier)
     {
       rest.push_back(k);
     }
   }
-  const std::vector<Neighbours> neighbours = neighboursOf(samples, result.Faults, rest, wide, threads);
-  std::vector<float> counts;
+  if (rest.empty())
+  {
+    return;
+  }
+  const std::vector<Neighbours> neighbours =
+    neighboursOf(samples, result.Faults, rest, wide, threads);
+  std::vector<float> counts, votes;
   for (const Neighbours& around : neighbours)
   {
     counts.push_back(static_cast<float>(around.Count));
+    votes.push_back(static_cast<float>(std::abs(around.meanVote())));
   }
-  double few = 0;
-  if (!counts.empty())
-  {
-    const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
-    std::nth_element(counts.begin(), middle, counts.end());
-    few = AloneShare * *middle;
-  }
-  const auto n = static_cast<double>(samples.size());
-  const bool outliers =
-    earlier == EarlierFaults::Outliers || result.Outliers >= ShareOfFaults * n;
+  const double few = AloneShare * quantile(counts, 0.5), usual = quantile(votes, 0.5);
+  const double deviations = earlier.Flipped ? LaterDeviations : VoteDeviations;
   for (std::size_t i = 0; i < rest.size(); ++i)
   {
     const Neighbours& around = neighbours[i];
@@ -230,8 +246,8 @@ void findMoreFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>&
       result.Faults[k] = SampleFault::Outlier;
       ++result.Outliers;
     }
-    else if (samples[k].HasNormal &&
-      around.contradict(checks[k].Agreement < 0 ? LaterVote : AnyVote))
+    else if (flipped && samples[k].HasNormal &&
+      around.contradict(usual * (checks[k].Agreement < 0 ? AccusedVote : AnyVote), deviations))
     {
       result.Faults[k] = SampleFault::Flipped;
       ++result.Flipped;
@@ -242,12 +258,12 @@ void findMoreFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>&
 
 template <int Dim>
 SampleFaults findFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>& checks,
-  EarlierFaults earlier, int threads)
+  const EarlierFaults& earlier, int threads)
 {
   SampleFaults result;
   result.Faults.assign(samples.size(), SampleFault::None);
   std::vector<std::size_t> accused;
-  const double farthest = farthestInlier(samples, checks, earlier == EarlierFaults::Outliers);
+  const double farthest = farthestInlier(samples, checks, earlier.Outliers);
   for (std::size_t k = 0; k < samples.size(); ++k)
   {
     if (!samples[k].IsExtra && std::abs(checks[k].Distance) > farthest)
@@ -255,15 +271,16 @@ SampleFaults findFaults(const Samples<Dim>& samples, const std::vector<SampleChe
       result.Faults[k] = SampleFault::Outlier;
       ++result.Outliers;
     }
-    else if (samples[k].HasNormal && checks[k].Agreement < 0)
+    else if (samples[k].HasNormal && checks[k].Agreement < 0 && !earlier.NoFlips)
     {
       accused.push_back(k);
     }
   }
   const auto n = static_cast<double>(samples.size());
-  if (result.Outliers > MostOutliers * n)
+  if (result.Outliers > MostOutliers * n ||
+    (!earlier.Outliers && result.Outliers < LeastOutliers * n))
   {
-    return {};
+    forget(SampleFault::Outlier, result.Outliers, result);
   }
   const bool wide = static_cast<double>(accused.size()) > ManyAccused * n;
   if (!accused.empty())
@@ -272,20 +289,26 @@ SampleFaults findFaults(const Samples<Dim>& samples, const std::vector<SampleChe
       neighboursOf(samples, result.Faults, accused, wide, threads);
     for (std::size_t i = 0; i < accused.size(); ++i)
     {
-      if (neighbours[i].contradict(wide ? LaterVote : FlippedVote))
+      if (neighbours[i].contradict(wide ? 0 : FlippedVote, VoteDeviations))
       {
         result.Faults[accused[i]] = SampleFault::Flipped;
         ++result.Flipped;
       }
     }
   }
-  if (earlier != EarlierFaults::None || result.Outliers + result.Flipped >= ShareOfFaults * n)
+  if (!earlier.Flipped && result.Flipped < LeastFlipped * n)
+  {
+    forget(SampleFault::Flipped, result.Flipped, result);
+  }
+  if (result.Outliers + result.Flipped > 0 || earlier.Outliers || earlier.Flipped)
   {
     findMoreFaults(samples, checks, earlier, wide, threads, result);
   }
   return result;
 }
 
-template SampleFaults findFaults<2>(const Samples<2>&, const std::vector<SampleCheck>&, EarlierFaults, int);
-template SampleFaults findFaults<3>(const Samples<3>&, const std::vector<SampleCheck>&, EarlierFaults, int);
+template SampleFaults findFaults<2>(
+  const Samples<2>&, const std::vector<SampleCheck>&, const EarlierFaults&, int);
+template SampleFaults findFaults<3>(
+  const Samples<3>&, const std::vector<SampleCheck>&, const EarlierFaults&, int);
 }

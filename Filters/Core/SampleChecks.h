@@ -34,20 +34,23 @@ struct SampleFaults
   double Flipped = 0;              ///< number of flipped normals
 };
 
-/// What was found, and corrected, before: more faults are then searched for more closely.
-enum class EarlierFaults
+/// What was found and corrected before: more of its kind is then searched for more closely.
+struct EarlierFaults
 {
-  None,
-  Flipped, ///< but no outliers
-  Outliers
+  bool Outliers = false;
+  bool Flipped = false;
+  bool NoFlips = false; ///< turning normals did not help: no others are flipped either
 };
 
 /**
- * The faults of samples, given how they fit a level that they determine by far: an outlier is more
- * than 1.5 knot spacings and four standard deviations, by the median, away from the zero set. A
+ * The faults of samples, given how they fit a level that they determine by far.
+ *
+ * An outlier is more than 1.5 knot spacings and four standard deviations, by the median, away from
+ * the zero set, or, where there are some, hardly has neighbours and none that agree with it. A
  * normal is flipped if it points against the gradient of f and against the sum of the normals of
  * the samples around it, those about in its tangent plane: on parts too thin for the level the
- * gradient alone would accuse sound normals of one side.
+ * gradient alone would accuse sound normals of one side. Where there are some, all normals are
+ * compared with those around them. A few faults count for none.
  *
  * @param samples  sorted
  * @param checks   of each sample
@@ -55,7 +58,7 @@ enum class EarlierFaults
  */
 template <int Dim>
 SampleFaults findFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>& checks,
-  EarlierFaults earlier, int threads);
+  const EarlierFaults& earlier, int threads);
 }
 
 #endif
