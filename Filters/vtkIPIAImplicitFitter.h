@@ -71,7 +71,8 @@
  * ### Input
  * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of
  * them, all of whose blocks make one fit. SetInputArrayToProcess: 0, the normals (3 components;
- * default: the active point normals); 1, optional row weights w_k >= 0 (1 component); 3, optional
+ * default: the active point normals); 1, optional row weights w_k >= 0 (1 component), for each point
+ * or, with FIELD_ASSOCIATION_NONE, one for all points of a block in its field data; 3, optional
  * local fairing weights > 0 (1 component, of the hierarchy): around points where it is 10 the
  * fairing energy counts tenfold against the data, so that f is smoother there, where it is 0.1 a
  * tenth; 1 is as without. Any numeric type. Normals need not have unit length.
@@ -83,8 +84,9 @@
  * ### Output
  * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`; the results
  * below as field data. Origin and last point are the ends of the domain. Any sub-extent can be
- * asked for. Port 1: the points that were fitted, with all their arrays, and `Residual` (f) and
- * `Distance` (f / |grad f|). Port 2: the control lattice, a vtkImageData with point array
+ * asked for. Port 1: the points that were fitted, with all their arrays, `Residual` (f), `Distance`
+ * (f / |grad f|) and `NormalAgreement` (n . grad f / |grad f|, negative where the normal points
+ * against f, 0 where there is none). Port 2: the control lattice, a vtkImageData with point array
  * `Coefficient`, with UniformRational also `Weight`, origin lo - h, spacing h and dimensions N, on
  * domain [lo, hi], and the far field
  * as field data: `FarField`, one signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1)
@@ -96,6 +98,18 @@
  * If all points lie in a plane perpendicular to an axis and their normals in that plane, f is a
  * bicubic spline in that plane and the image has one slice. Otherwise the fit is tricubic.
  * vtkContourFilter contours any slice; vtkFlyingEdges2D of VTK 9.1 takes each for one across z.
+ *
+ * ### Faulty input
+ * The hierarchy compares all points with the fit of its finest level that they overdetermine, of at
+ * least 3 points per occupied cell. Points that are far from what the others agree on are outliers;
+ * normals that point against the gradient and against those around them are flipped. Where these
+ * are more than a few (0.05 and 0.5 %) the fit starts again without the outliers and without the
+ * rows of the flipped normals. This is for up to about 5 % of outliers and up to a quarter of
+ * normals that are flipped here and there. Normals that are flipped together on a whole patch of
+ * the surface agree with their neighbours and are not found, nor are faults of points that are too
+ * sparse for such a level. OutliersFound and FlippedNormalsFound are the shares; one warning tells
+ * of flipped normals from 1 % on, and of a closed surface that is inside out: f is negative at the
+ * whole border of the domain. Scans from within, such as of rooms, get that too, and are right.
  *
  * ### Errors
  * Refused with one error and empty outputs: no points, one point, all points equal or (in 3-D) on a
@@ -458,7 +472,8 @@ public:
    * points. NoiseFound is the root mean square distance (world units) of the points from f = 0 on
    * the finest level that they alone determine, 0 if they are too sparse for any or FairingWeight
    * is set; SmoothingLengthUsed (world units) the length below which noise is smoothed away, 0 on
-   * clean data.
+   * clean data. FlippedNormalsFound is the share of the normals, OutliersFound that of the points,
+   * that the hierarchy left out, see "Faulty input"; AverageError and MaximumError count these.
    */
   vtkGetMacro(NumberOfIterationsUsed, int);
   vtkGetMacro(StepSizeUsed, double);

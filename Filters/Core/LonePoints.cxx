@@ -9,7 +9,8 @@ namespace ipia
 {
 namespace
 {
-/// Side of the cubes in spacings, and the most of them along the longest side: a bound on memory.
+/// Side of the cubes in spacings (of squares three times that), and the most of them along the
+/// longest side: a bound on memory.
 constexpr double CubeSpacings = 2, MostCubes = 160;
 /// Lone points have less than this share of the usual number of neighbours.
 constexpr double LoneShare = 1. / 9;
@@ -23,7 +24,7 @@ template <int Dim>
 Points<Dim> withoutLonePoints(const Points<Dim>& positions, const Box<Dim>& box, double spacing)
 {
   const double longest = box.sides().maxCoeff();
-  const double side = std::max(CubeSpacings * spacing, longest / MostCubes);
+  const double side = std::max(CubeSpacings * (Dim == 2 ? 3 : 1) * spacing, longest / MostCubes);
   if (!(side > 0))
   {
     return positions;

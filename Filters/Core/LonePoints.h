@@ -11,9 +11,9 @@
 namespace ipia
 {
 /**
- * The points that have neighbours: around which 3^Dim cubes of about two spacings hold more than a
- * ninth of what they do where points are spaced as they are on average. All points if hardly any
- * would go, or so many that they are not the exception.
+ * The points that have neighbours: around which 3^Dim cubes of two spacings (squares of six) hold
+ * more than a ninth of what they do where points are spaced as they are on average. All points if
+ * hardly any would go, or so many that they are not the exception.
  *
  * @param positions  Dim x n, inside the box
  * @param spacing    see pointSpacing()

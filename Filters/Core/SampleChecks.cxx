@@ -15,7 +15,8 @@ constexpr double OutlierSpacings = 1.5, OutlierDeviations = 4, MostOutliers = 0.
 constexpr double LaterSpacings = 0.03, LaterDistances = 5, LaterShare = 0.9;
 /// The deviation of a normal distribution by the median of its absolute values.
 constexpr double DeviationOfMedian = 1.4826;
-/// Neighbours are looked for in blocks, of which an occupied one holds at least so many samples.
+/// Neighbours are looked for in blocks, of which an occupied one holds at least so many samples of
+/// a surface, nine of which lie around one; of a curve three do, with three times as many.
 constexpr double SamplesPerBlock = 2;
 /// And this many times as many where more than this share of the normals point against the
 /// gradient, so that chance decides less.
@@ -64,7 +65,7 @@ public:
     : All(samples)
     , Faults(faults)
   {
-    const double perBlock = SamplesPerBlock * (wide ? WiderBlocks : 1);
+    const double perBlock = SamplesPerBlock * (Dim == 2 ? 3 : 1) * (wide ? WiderBlocks : 1);
     do
     {
       ++this->Bits;

@@ -158,6 +158,11 @@ void vtkPIPIASurfaceReconstruction::SetStepSize(double value)
   this->GetFitter()->SetStepSize(value);
 }
 
+void vtkPIPIASurfaceReconstruction::SetUseNormalLengths(bool value)
+{
+  this->GetFitter()->SetUseNormalLengths(value);
+}
+
 void vtkPIPIASurfaceReconstruction::SetExtraValuesArray(const char* name)
 {
   this->ExtraValues->Take(this, name);
