@@ -28,7 +28,7 @@ constexpr double FirstSmoothing = 2.4, ValidationStep = 1.41421356, ValidationSl
 /// Squared errors of predicted normals are cut here, so that outliers do not decide.
 constexpr double MostNormalError = 2;
 /// The fit starts again without faulty samples as long as there are some, but not more often.
-constexpr int MostRepetitions = 3;
+constexpr int MostRepetitions = 4;
 /// Turned normals show fewer others that are flipped, at most this share of those turned before:
 /// where noise mixes the sides of thin parts it does not end.
 constexpr double MostNewFlips = 0.3;

@@ -31,9 +31,10 @@ constexpr double FlippedVote = -0.3;
 /// any other normal below the second. Where chance flips many this is small for all, but not where
 /// noise mixes the sides of thin parts.
 constexpr double AccusedVote = -0.5, AnyVote = -0.7;
-/// Either is beyond so many deviations of the sum that chance alone gives, fewer where others were
-/// corrected before.
-constexpr double VoteDeviations = 3, LaterDeviations = 1;
+/// Either is beyond so many deviations of the sum that chance alone gives.
+constexpr double VoteDeviations = 3;
+/// The same where others were turned before.
+constexpr double LaterAccusedVote = -0.15, LaterAnyVote = -0.5, LaterDeviations = 0.5;
 /// Smaller shares of outliers and of flipped normals count for none: a few that the fit misjudges.
 constexpr double LeastOutliers = 5e-4, LeastFlipped = 5e-3;
 /// A sample is alone if it has less than this share of the usual number of neighbours, of which
@@ -237,7 +238,9 @@ void findMoreFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>&
     votes.push_back(static_cast<float>(std::abs(around.meanVote())));
   }
   const double few = AloneShare * quantile(counts, 0.5), usual = quantile(votes, 0.5);
-  const double deviations = earlier.Flipped ? LaterDeviations : VoteDeviations;
+  const double accused = usual * (earlier.Flipped ? LaterAccusedVote : AccusedVote),
+               any = usual * (earlier.Flipped ? LaterAnyVote : AnyVote),
+               deviations = earlier.Flipped ? LaterDeviations : VoteDeviations;
   for (std::size_t i = 0; i < rest.size(); ++i)
   {
     const Neighbours& around = neighbours[i];
@@ -248,7 +251,7 @@ void findMoreFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>&
       ++result.Outliers;
     }
     else if (flipped && samples[k].HasNormal &&
-      around.contradict(usual * (checks[k].Agreement < 0 ? AccusedVote : AnyVote), deviations))
+      around.contradict(checks[k].Agreement < 0 ? accused : any, deviations))
     {
       result.Faults[k] = SampleFault::Flipped;
       ++result.Flipped;
