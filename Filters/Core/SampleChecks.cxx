@@ -67,18 +67,24 @@ public:
     , Faults(faults)
   {
     const double perBlock = SamplesPerBlock * (Dim == 2 ? 3 : 1) * (wide ? WiderBlocks : 1);
+    this->Blocks.reserve(samples.size());
+    for (std::size_t k = 0; k < samples.size(); ++k)
+    {
+      this->Blocks.push_back({ samples[k].Key, k });
+    }
     do
     {
       ++this->Bits;
-      this->Blocks.clear();
-      for (std::size_t k = 0; k < samples.size(); ++k)
+      std::size_t kept = 0;
+      for (Block block : this->Blocks)
       {
-        const std::uint64_t key = samples[k].Key >> (Dim * this->Bits);
-        if (this->Blocks.empty() || this->Blocks.back().Key != key)
+        block.Key >>= Dim;
+        if (kept == 0 || this->Blocks[kept - 1].Key != block.Key)
         {
-          this->Blocks.push_back({ key, k });
+          this->Blocks[kept++] = block;
         }
       }
+      this->Blocks.resize(kept);
     } while (
       static_cast<double>(samples.size()) < perBlock * static_cast<double>(this->Blocks.size()) &&
       this->Blocks.size() > 1);
