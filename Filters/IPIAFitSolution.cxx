@@ -2,7 +2,7 @@
 #include "IPIAFitSolution.h"
 
 #include "Core/Parallel.h"
-#include "IPIAOrientation.h"
+#include "IPIAFaultyInput.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFitter.h"
 
@@ -384,10 +384,9 @@ FitSolution<Dim> solve(const FitProblem& problem, const FitParameters& parameter
   }
   if (solution.isValid())
   {
-    const std::string orientation =
-      orientationWarning(problem, *solution.placed(), solution.FlippedNormals);
-    solution.Warning +=
-      text(solution.Warning.empty() || orientation.empty() ? "" : " ", orientation);
+    const std::string faults = faultyInputWarning(
+      problem, *solution.placed(), solution.ShareOfOutliers, solution.FlippedNormals);
+    solution.Warning += text(solution.Warning.empty() || faults.empty() ? "" : " ", faults);
   }
   // Arrays of float hold f, whose far field is as large as an offset.
   const double largest = std::max({ solution.Solver.Energy, solution.MaximumError,

@@ -155,9 +155,9 @@
  * such as point arrays and where a surface is trimmed. Normals that are flipped together on a whole
  * patch of the surface agree with their neighbours and are not found, nor are faults of points that
  * are too sparse for such a level. OutliersFound and FlippedNormalsFound are the shares; one
- * warning tells of flipped normals from 1 % on, and of a closed surface that is inside out: f is
- * negative at the whole border of the domain. Scans from within, such as of rooms, get that too,
- * and are right.
+ * warning tells of outliers from 0.5 % on, of flipped normals from 1 % on, and of a closed surface
+ * that is inside out: f is negative at the whole border of the domain. Scans from within, such as
+ * of rooms, get that too, and are right.
  *
  * ### Errors
  * Refused with one error and empty outputs: no points, one point, all points equal or (in 3-D) on a

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "IPIAOrientation.h"
+#include "IPIAFaultyInput.h"
 
 #include "IPIAText.h"
 
@@ -10,11 +10,18 @@ namespace ipia
 namespace
 {
 /// Thin parts and noise make a few sound normals look flipped, but no more than this share.
-constexpr double SignificantShare = 0.01;
+constexpr double SignificantFlips = 0.01;
+/// The same for outliers.
+constexpr double SignificantOutliers = 0.005;
 /// f is sampled at so many places along each axis of the border; the surface is inside out if it is
 /// negative at nearly all of them.
 constexpr int PlacesPerAxis = 9;
 constexpr double NearlyAll = 0.99;
+
+std::string percent(double share)
+{
+  return text(std::round(1000 * share) / 10, " %");
+}
 
 /// The share of the border of the domain where f is negative.
 double negativeBorder(const FitProblem& problem, const PlacedSpline& function)
@@ -53,21 +60,29 @@ double negativeBorder(const FitProblem& problem, const PlacedSpline& function)
 }
 }
 
-std::string orientationWarning(
-  const FitProblem& problem, const PlacedSpline& function, double flipped)
+std::string faultyInputWarning(
+  const FitProblem& problem, const PlacedSpline& function, double outliers, double flipped)
 {
   std::string warning;
-  if (flipped >= SignificantShare)
+  const auto add = [&warning](const std::string& sentences)
+  { warning += text(warning.empty() ? "" : " ", sentences); };
+  if (outliers >= SignificantOutliers)
   {
-    warning = text(std::round(1000 * flipped) / 10,
-      " % of the normals point against those around them and against the surface, which was fitted "
+    add(text(percent(outliers),
+      " of the points are outliers, far from the surface that the others agree on, and were left "
+      "out. Outlier of output 1 is 1 there."));
+  }
+  if (flipped >= SignificantFlips)
+  {
+    add(text(percent(flipped),
+      " of the normals point against those around them and against the surface, which was fitted "
       "without them. NormalAgreement of output 1 is negative there. Orient the normals "
-      "consistently, for instance with vtkPCANormalEstimation.");
+      "consistently, for instance with vtkPCANormalEstimation."));
   }
   // Where points were left out, the domain may lie within what they enclose.
   if (problem.OutsideBounds == 0 && negativeBorder(problem, function) >= NearlyAll)
   {
-    warning += text(warning.empty() ? "" : " ",
+    add(
       "f is negative all along the border of the domain: the normals point into the surface, and "
       "inside and outside are exchanged. This is right for a scan from within, such as of a room; "
       "otherwise turn the normals, for instance with vtkReverseSense.");
