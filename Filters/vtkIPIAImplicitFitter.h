@@ -548,13 +548,14 @@ public:
    * with offset rows; 0 otherwise. WeightStepSizeUsed is the smallest step size that the weights of
    * UniformRational were changed with, WeightStepSize unless that was too large; 0 otherwise.
    * OffsetDistanceUsed is the distance that was aimed at, before rows were drawn nearer to their
-   * points. NoiseFound is the root mean square distance (world units) of the points from f = 0 on
-   * the finest level that they alone determine, 0 if they are too sparse for any or FairingWeight
-   * is set; SmoothingLengthUsed (world units) the length below which noise is smoothed away, 0 on
-   * clean data. FlippedNormalsFound is the share of the normals, OutliersFound that of the points,
-   * that the hierarchy left out, see "Faulty input"; AverageError and MaximumError count these.
-   * NumberOfPointsAdded is the number of points that were added to an earlier fit, 0 if all points
-   * were fitted; NumberOfCoefficientsSolved that of coefficients solved for, on all levels.
+   * points. NoiseFound is the distance (world units) that 68 % of the points keep from f = 0 on
+   * the finest level that they alone determine, the standard deviation of normally distributed
+   * noise, 0 if they are too sparse for any or FairingWeight is set; SmoothingLengthUsed (world
+   * units) the length below which noise is smoothed away, 0 on clean data. FlippedNormalsFound is
+   * the share of the normals, OutliersFound that of the points, that the hierarchy left out, see
+   * "Faulty input"; AverageError and MaximumError count these. NumberOfPointsAdded is the number of
+   * points that were added to an earlier fit, 0 if all points were fitted;
+   * NumberOfCoefficientsSolved that of coefficients solved for, on all levels.
    */
   vtkGetMacro(NumberOfIterationsUsed, int);
   vtkGetMacro(StepSizeUsed, double);

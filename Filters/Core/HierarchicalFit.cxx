@@ -83,17 +83,11 @@ Misses missesOf(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
     [&](const Sample<Dim>& sample, double f, const Point<Dim>& gradient)
     {
       Misses one;
-      const double slope = gradient.norm();
-      const double distance = f / std::max(slope, LeastSlope);
-      if (sample.HasNormal)
-      {
-        one.Distances = distance * distance;
-        one.Oriented = 1;
-      }
       if (checks)
       {
         SampleCheck& check = (*checks)[static_cast<std::size_t>(&sample - points.data())];
-        check.Distance = static_cast<float>(distance / spacing);
+        const double slope = gradient.norm();
+        check.Distance = static_cast<float>(f / std::max(slope, LeastSlope) / spacing);
         check.Agreement = sample.HasNormal && slope > 0
           ? static_cast<float>(gradient.dot(sample.Normal) / slope)
           : 1.F;
@@ -249,21 +243,22 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
   // The finest level that the points alone determine tells how noisy they are, and which of them
   // contradict the others; without these the fit starts again.
   Misses misses;
-  const auto correct = [&]
+  std::vector<SampleCheck> checks;
+  const auto check = [&](std::size_t level)
   {
-    std::vector<SampleCheck> checks;
-    const std::size_t last = result.DeterminedLevels - 1;
-    misses = missesOf(levels[last], bricks[last], levels.back().points(), threads,
-      judge.isDone() ? nullptr : &checks);
-    return judge.correct(levels.back().points(), checks, threads);
+    const Samples<Dim>& points = levels.back().points();
+    return missesOf(levels[level], bricks[level], points, threads, &checks);
   };
+  const auto noiseOf = [&](std::size_t level)
+  { return spreadOf(levels.back().points(), checks) * levels[level].Grid.Spacing.mean(); };
   while (result.DeterminedLevels > 0)
   {
     if (!solveUpTo(result.DeterminedLevels))
     {
       return result;
     }
-    if (!correct())
+    misses = check(result.DeterminedLevels - 1);
+    if (!judge.correct(levels.back().points(), checks, threads))
     {
       break;
     }
@@ -275,12 +270,15 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
   if (result.DeterminedLevels > 0 && options.SmoothingLength < 0)
   {
     const std::size_t last = result.DeterminedLevels - 1;
-    result.Noise = misses.noise();
+    result.Noise = noiseOf(last);
     const auto before = [&]
     {
-      return last > 0
-        ? missesOf(levels[last - 1], bricks[last - 1], levels.back().points(), threads).noise()
-        : 0;
+      if (last == 0)
+      {
+        return 0.0;
+      }
+      check(last - 1);
+      return noiseOf(last - 1);
     };
     if (isNoise(result.Noise, levels[last].Grid.Spacing.mean(), before))
     {

@@ -28,26 +28,16 @@ namespace ipia
 /// How far the points miss the zero set.
 struct Misses
 {
-  double Distances = 0; ///< squares, of those with normals
-  double Oriented = 0;  ///< number of these
-  double Values = 0;    ///< squares of f, but for extra rows
-  double Points = 0;    ///< number of these
-  double Largest = 0;   ///< |f| of these
+  double Values = 0;  ///< squares of f, but for extra rows
+  double Points = 0;  ///< number of these
+  double Largest = 0; ///< |f| of these
 
   Misses& operator+=(const Misses& other)
   {
-    this->Distances += other.Distances;
-    this->Oriented += other.Oriented;
     this->Values += other.Values;
     this->Points += other.Points;
     this->Largest = std::max(this->Largest, other.Largest);
     return *this;
-  }
-
-  /// The root mean square distance.
-  double noise() const
-  {
-    return this->Oriented > 0 ? std::sqrt(this->Distances / this->Oriented) : 0;
   }
 };
 
@@ -57,8 +47,8 @@ struct HierarchicalResult
   bool Aborted = false;
   std::shared_ptr<const BrickSpline<Dim>> Function; ///< nullptr if aborted
   std::vector<LevelReport> Reports;                 ///< coarse to fine
-  /// Root mean square distance of the points from the zero set of the finest level that they alone
-  /// determine; 0 if they are too sparse for any, or a smoothing length was given.
+  /// Spread of the points' distances from the zero set of the finest level that they alone
+  /// determine, see spreadOf(); 0 if they are too sparse for any, or a smoothing length was given.
   double Noise = 0;
   double SmoothingLength = 0; ///< as used
   /// Levels, from the coarsest, that the points alone determine.
@@ -108,8 +98,8 @@ Misses missesOf(const BrickSpline<Dim>& function, const Samples<Dim>& samples);
 /// Whether it is noise that points miss the surface of a level by, and no detail that its lattice
 /// cannot follow.
 ///
-/// @param noiseBefore  by how much they miss that of the coarser level, 0 without; asked if it
-/// counts
+/// @param noise        spread of their distances
+/// @param noiseBefore  the same of the coarser level, 0 without; asked if it counts
 bool isNoise(double noise, double spacing, const std::function<double()>& noiseBefore);
 
 /// @param lattice  the finest lattice

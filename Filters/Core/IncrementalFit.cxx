@@ -490,6 +490,25 @@ Misses IncrementalFit<Dim>::missesOfAll(const Level<Dim>& level, const BrickLatt
   return misses;
 }
 
+/// The largest spread of the points of the last fit and those of each addition.
+template <int Dim>
+double IncrementalFit<Dim>::noiseOfAll(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Samples<Dim>& added, int threads) const
+{
+  std::vector<SampleCheck> checks;
+  const auto noiseOf = [&](const Samples<Dim>& run)
+  {
+    missesOf(level, bricks, run, threads, &checks);
+    return spreadOf(run, checks) * level.Grid.Spacing.mean();
+  };
+  double noise = noiseOf(added);
+  for (const Samples<Dim>& run : this->Points)
+  {
+    noise = std::max(noise, noiseOf(run));
+  }
+  return noise;
+}
+
 /// False if all is to be fitted again.
 template <int Dim>
 bool IncrementalFit<Dim>::add(
@@ -572,25 +591,23 @@ bool IncrementalFit<Dim>::add(
     if (l + 1 == this->Last.DeterminedLevels)
     {
       std::vector<SampleCheck> checks;
-      const Misses ofAdded = missesOf(level, bricks[l], samples, threads, &checks);
+      missesOf(level, bricks[l], samples, threads, &checks);
       const SampleFaults faults = findFaults(samples, checks, {}, threads);
       if (faults.Outliers + faults.Flipped > 0)
       {
         return false;
       }
       result.Faults.Samples += static_cast<double>(samples.size());
-      result.Faults.Normals += ofAdded.Oriented;
+      result.Faults.Normals += numberOfNormals(samples);
       if (gated)
       {
         const auto n = static_cast<double>(samples.size());
         const auto kept = static_cast<double>(this->Input.Positions.cols());
-        const double noise = ofAdded.noise();
+        const double noise = spreadOf(samples, checks) * level.Grid.Spacing.mean();
         result.Noise =
           std::sqrt((n * noise * noise + kept * this->Last.Noise * this->Last.Noise) / (n + kept));
-        const auto before = [&] {
-          return l > 0 ? this->missesOfAll(levels[l - 1], bricks[l - 1], samples, threads).noise()
-                       : 0.0;
-        };
+        const auto before = [&]
+        { return l > 0 ? this->noiseOfAll(levels[l - 1], bricks[l - 1], samples, threads) : 0.0; };
         if (isNoise(result.Noise, level.Grid.Spacing.mean(), before))
         {
           return false;

@@ -54,6 +54,8 @@ private:
     const HierarchicalOptions& options) const;
   bool add(
     HermiteInput<Dim> added, const ProgressCallback& progress, HierarchicalResult<Dim>& result);
+  double noiseOfAll(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+    const Samples<Dim>& added, int threads) const;
   Misses missesOfAll(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
     const Samples<Dim>& added, int threads) const;
 

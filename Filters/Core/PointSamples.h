@@ -9,6 +9,8 @@
 #include "BulkVector.h"
 #include "Lattice.h"
 
+#include <algorithm>
+
 namespace ipia
 {
 /// What is to be fitted; positions are relative to the lower corner of the domain and inside it.
@@ -43,6 +45,13 @@ struct Sample
 
 template <int Dim>
 using Samples = BulkVector<Sample<Dim>>;
+
+template <int Dim>
+double numberOfNormals(const Samples<Dim>& samples)
+{
+  return static_cast<double>(std::count_if(
+    samples.begin(), samples.end(), [](const Sample<Dim>& sample) { return sample.HasNormal; }));
+}
 
 /// Sub-cells per knot cell of the finest lattice and axis, as a power of two.
 constexpr int SubCellBits = 3;

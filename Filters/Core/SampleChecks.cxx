@@ -14,6 +14,8 @@ constexpr double OutlierSpacings = 1.5, OutlierDeviations = 4, MostOutliers = 0.
 /// Where others were left out before, fewer spacings are enough, and so many times the distance
 /// that this share of the samples keeps.
 constexpr double LaterSpacings = 0.03, LaterDistances = 5, LaterShare = 0.9;
+/// The share of a normal distribution that is within its deviation.
+constexpr double ShareOfDeviation = 0.6827;
 /// The deviation of a normal distribution by the median of its absolute values.
 constexpr double DeviationOfMedian = 1.4826;
 /// Neighbours are looked for in blocks, of which an occupied one holds at least so many samples of
@@ -268,6 +270,21 @@ void findMoreFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>&
 }
 
 template <int Dim>
+double spreadOf(const Samples<Dim>& samples, const std::vector<SampleCheck>& checks)
+{
+  std::vector<float> distances;
+  distances.reserve(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k)
+  {
+    if (samples[k].HasNormal)
+    {
+      distances.push_back(std::abs(checks[k].Distance));
+    }
+  }
+  return distances.empty() ? 0 : quantile(distances, ShareOfDeviation);
+}
+
+template <int Dim>
 SampleFaults findFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>& checks,
   const EarlierFaults& earlier, int threads)
 {
@@ -318,6 +335,8 @@ SampleFaults findFaults(const Samples<Dim>& samples, const std::vector<SampleChe
   return result;
 }
 
+template double spreadOf<2>(const Samples<2>&, const std::vector<SampleCheck>&);
+template double spreadOf<3>(const Samples<3>&, const std::vector<SampleCheck>&);
 template SampleFaults findFaults<2>(
   const Samples<2>&, const std::vector<SampleCheck>&, const EarlierFaults&, int);
 template SampleFaults findFaults<3>(

@@ -19,6 +19,12 @@ struct SampleCheck
   float Agreement = 1; ///< n . grad f / |grad f|; 1 for samples without a normal
 };
 
+/// The distance that 68 % of the samples with a normal keep, in knot spacings: the standard
+/// deviation if they are distributed normally. Parts that a level cannot follow, thin ones, walls
+/// and edges, hardly count.
+template <int Dim>
+double spreadOf(const Samples<Dim>& samples, const std::vector<SampleCheck>& checks);
+
 /// What is wrong with a sample.
 enum class SampleFault : char
 {

@@ -19,10 +19,7 @@ SampleJudge<Dim>::SampleJudge(const Samples<Dim>& samples, std::vector<std::int6
   : Rows(std::move(rows))
 {
   this->Counts.Samples = static_cast<double>(samples.size());
-  for (const Sample<Dim>& sample : samples)
-  {
-    this->Counts.Normals += sample.HasNormal;
-  }
+  this->Counts.Normals = numberOfNormals(samples);
 }
 
 template <int Dim>

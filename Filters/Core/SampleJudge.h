@@ -40,9 +40,6 @@ public:
   /// @param rows  of the input that the samples are
   SampleJudge(const Samples<Dim>& samples, std::vector<std::int64_t> rows);
 
-  /// Whether the verdict is final; then samples need no checks.
-  bool isDone() const { return this->Done; }
-
   /**
    * Corrects the samples that were fitted.
    *
