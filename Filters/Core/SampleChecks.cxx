@@ -4,6 +4,8 @@
 #include "MortonOrder.h"
 #include "Parallel.h"
 
+#include <limits>
+
 namespace ipia
 {
 namespace
@@ -24,6 +26,9 @@ constexpr double SamplesPerBlock = 2;
 /// And this many times as many where more than this share of the normals point against the
 /// gradient, so that chance decides less.
 constexpr double WiderBlocks = 4, ManyAccused = 0.15;
+/// Of samples that seem alone, those around them in blocks of this many times as many are asked:
+/// sparse parts of a surface agree among themselves.
+constexpr double BlocksOfSparse = 16;
 /// A neighbour is beside a sample if its distance from the tangent plane is at most this share of
 /// that from the sample.
 constexpr double TangentShare = 0.4;
@@ -54,6 +59,11 @@ struct Neighbours
 
   double meanVote() const { return this->Vote / std::max(this->Beside, 1.0); }
 
+  bool isAmongAlike() const { return this->Like > LikeShare * this->Count; }
+
+  /// Whether less than so many are around, of which hardly any is alike.
+  bool isAlone(double few) const { return this->Count < few && !this->isAmongAlike(); }
+
   bool contradict(double vote, double deviations) const
   {
     return this->meanVote() < vote && this->Vote < -deviations * std::sqrt(this->Beside);
@@ -65,11 +75,12 @@ template <int Dim>
 class Neighbourhood
 {
 public:
-  Neighbourhood(const Samples<Dim>& samples, const std::vector<SampleFault>& faults, bool wide)
+  /// @param wider  so many times as many samples in a block as a surface has at least
+  Neighbourhood(const Samples<Dim>& samples, const std::vector<SampleFault>& faults, double wider)
     : All(samples)
     , Faults(faults)
   {
-    const double perBlock = SamplesPerBlock * (Dim == 2 ? 3 : 1) * (wide ? WiderBlocks : 1);
+    const double perBlock = SamplesPerBlock * (Dim == 2 ? 3 : 1) * wider;
     this->Blocks.reserve(samples.size());
     for (std::size_t k = 0; k < samples.size(); ++k)
     {
@@ -196,11 +207,11 @@ double farthestInlier(
 /// The neighbours of the given samples.
 template <int Dim>
 std::vector<Neighbours> neighboursOf(const Samples<Dim>& samples,
-  const std::vector<SampleFault>& faults, const std::vector<std::size_t>& of, bool wide,
+  const std::vector<SampleFault>& faults, const std::vector<std::size_t>& of, double wider,
   int threads)
 {
   std::vector<Neighbours> found(of.size());
-  const Neighbourhood<Dim> neighbourhood(samples, faults, wide);
+  const Neighbourhood<Dim> neighbourhood(samples, faults, wider);
   const auto n = static_cast<std::int64_t>(of.size());
 #pragma omp parallel for schedule(dynamic, 64) num_threads(threads)
   for (std::int64_t i = 0; i < n; ++i)
@@ -239,7 +250,7 @@ void findMoreFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>&
     return;
   }
   const std::vector<Neighbours> neighbours =
-    neighboursOf(samples, result.Faults, rest, wide, threads);
+    neighboursOf(samples, result.Faults, rest, wide ? WiderBlocks : 1, threads);
   std::vector<float> counts, votes;
   for (const Neighbours& around : neighbours)
   {
@@ -250,20 +261,34 @@ void findMoreFaults(const Samples<Dim>& samples, const std::vector<SampleCheck>&
   const double accused = usual * (earlier.Flipped ? LaterAccusedVote : AccusedVote),
                any = usual * (earlier.Flipped ? LaterAnyVote : AnyVote),
                deviations = earlier.Flipped ? LaterDeviations : VoteDeviations;
+  std::vector<std::size_t> alone;
   for (std::size_t i = 0; i < rest.size(); ++i)
   {
     const Neighbours& around = neighbours[i];
     const std::size_t k = rest[i];
-    if (outliers && around.Count < few && around.Like <= LikeShare * around.Count)
+    if (outliers && around.isAlone(few))
     {
-      result.Faults[k] = SampleFault::Outlier;
-      ++result.Outliers;
+      alone.push_back(k);
     }
     else if (flipped && samples[k].HasNormal &&
       around.contradict(checks[k].Agreement < 0 ? accused : any, deviations))
     {
       result.Faults[k] = SampleFault::Flipped;
       ++result.Flipped;
+    }
+  }
+  if (alone.empty())
+  {
+    return;
+  }
+  const std::vector<Neighbours> fartherOnes =
+    neighboursOf(samples, result.Faults, alone, BlocksOfSparse, threads);
+  for (std::size_t i = 0; i < alone.size(); ++i)
+  {
+    if (fartherOnes[i].isAlone(std::numeric_limits<double>::max()))
+    {
+      result.Faults[alone[i]] = SampleFault::Outlier;
+      ++result.Outliers;
     }
   }
 }
@@ -290,18 +315,37 @@ SampleFaults findFaults(const Samples<Dim>& samples, const std::vector<SampleChe
 {
   SampleFaults result;
   result.Faults.assign(samples.size(), SampleFault::None);
-  std::vector<std::size_t> accused;
-  const double farthest = farthestInlier(samples, checks, earlier.Outliers);
+  std::vector<std::size_t> accused, suspected;
+  const double certain = farthestInlier(samples, checks, false);
+  const double farthest = earlier.Outliers ? farthestInlier(samples, checks, true) : certain;
   for (std::size_t k = 0; k < samples.size(); ++k)
   {
-    if (!samples[k].IsExtra && std::abs(checks[k].Distance) > farthest)
+    if (!samples[k].IsExtra && std::abs(checks[k].Distance) > certain)
     {
       result.Faults[k] = SampleFault::Outlier;
       ++result.Outliers;
     }
+    else if (!samples[k].IsExtra && std::abs(checks[k].Distance) > farthest)
+    {
+      suspected.push_back(k);
+    }
     else if (samples[k].HasNormal && checks[k].Agreement < 0 && !earlier.NoFlips)
     {
       accused.push_back(k);
+    }
+  }
+  if (!suspected.empty())
+  {
+    // Where the level cannot follow, as on thin parts, those beside each other are alike.
+    const std::vector<Neighbours> neighbours =
+      neighboursOf(samples, result.Faults, suspected, 1, threads);
+    for (std::size_t i = 0; i < suspected.size(); ++i)
+    {
+      if (!neighbours[i].isAmongAlike())
+      {
+        result.Faults[suspected[i]] = SampleFault::Outlier;
+        ++result.Outliers;
+      }
     }
   }
   const auto n = static_cast<double>(samples.size());
@@ -314,7 +358,7 @@ SampleFaults findFaults(const Samples<Dim>& samples, const std::vector<SampleChe
   if (!accused.empty())
   {
     const std::vector<Neighbours> neighbours =
-      neighboursOf(samples, result.Faults, accused, wide, threads);
+      neighboursOf(samples, result.Faults, accused, wide ? WiderBlocks : 1, threads);
     for (std::size_t i = 0; i < accused.size(); ++i)
     {
       if (neighbours[i].contradict(wide ? 0 : FlippedVote, VoteDeviations))
