@@ -14,6 +14,7 @@
 namespace
 {
 using ipiatest::Checks;
+using ipiatest::Constant;
 using ipiatest::Output;
 using ipiatest::Text;
 using ipiatest::Vector3;
@@ -102,16 +103,18 @@ void SpoilControls(Filter filter, const std::function<void(vtkPolyData*)>& spoil
   filter->SetControlPointsData(controls);
 }
 
-/// An array of one number.
-vtkSmartPointer<vtkDoubleArray> Constant(
-  const char* name, vtkIdType tuples, double value, int components = 1)
+/// Moves the points of the input away from the origin.
+template <typename Filter>
+void ScaleInput(Filter filter, double scale)
 {
-  auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
-  array->Fill(value);
-  return array;
+  auto* data = vtkPointSet::SafeDownCast(filter->GetInputDataObject(0, 0));
+  for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
+  {
+    double x[3];
+    data->GetPoint(k, x);
+    data->GetPoints()->SetPoint(k, x[0] * scale, x[1] * scale, x[2] * scale);
+  }
+  data->Modified();
 }
 
 /// Arrays that are not one number per point, of both filters.
@@ -271,14 +274,7 @@ void TestLimits(Checks& checks, const std::string& name)
     refused("The points have an extent of",
       [&](Filter f)
       {
-        auto* data = vtkPointSet::SafeDownCast(f->GetInputDataObject(0, 0));
-        for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
-        {
-          double x[3];
-          data->GetPoint(k, x);
-          data->GetPoints()->SetPoint(k, x[0] * scale, x[1] * scale, x[2] * scale);
-        }
-        data->Modified();
+        ScaleInput<Filter>(f, scale);
         f->Modified();
       });
   }
@@ -323,14 +319,7 @@ void TestAccepted(Checks& checks, const std::string& name)
   {
     Filter filter = WarmFilter<Filter>();
     messages->Watch(filter);
-    auto* data = vtkPointSet::SafeDownCast(filter->GetInputDataObject(0, 0));
-    for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
-    {
-      double x[3];
-      data->GetPoint(k, x);
-      data->GetPoints()->SetPoint(k, x[0] * scale, x[1] * scale, x[2] * scale);
-    }
-    data->Modified();
+    ScaleInput(filter, scale);
     vtkSmartPointer<vtkPolyData> before = vtkSmartPointer<vtkPolyData>::New();
     before->DeepCopy(Output(filter, 0));
     filter->Update();

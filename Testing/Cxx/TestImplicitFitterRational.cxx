@@ -142,11 +142,8 @@ void TestRefusedCombinations(Checks& checks)
       [](auto* fitter)
       {
         auto* cloud = vtkPolyData::SafeDownCast(fitter->GetInput());
-        vtkNew<vtkDoubleArray> local;
-        local->SetName("LocalFairing");
-        local->SetNumberOfTuples(cloud->GetNumberOfPoints());
-        local->Fill(1);
-        cloud->GetPointData()->AddArray(local);
+        cloud->GetPointData()->AddArray(
+          ipiatest::Constant("LocalFairing", cloud->GetNumberOfPoints(), 1));
         fitter->SetInputArrayToProcess(
           3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "LocalFairing");
       }));

@@ -20,6 +20,7 @@
 namespace
 {
 using ipiatest::Checks;
+using ipiatest::Constant;
 using ipiatest::Method;
 using ipiatest::OrientedPoints;
 using ipiatest::SphereCloud;
@@ -170,12 +171,7 @@ void TestNoNormals(Checks& checks)
 void TestWrongComponentCount(Checks& checks)
 {
   auto cloud = SphereCloud();
-  vtkNew<vtkDoubleArray> pairs;
-  pairs->SetName("Pairs");
-  pairs->SetNumberOfComponents(2);
-  pairs->SetNumberOfTuples(cloud->GetNumberOfPoints());
-  pairs->Fill(1);
-  cloud->GetPointData()->AddArray(pairs);
+  cloud->GetPointData()->AddArray(Constant("Pairs", cloud->GetNumberOfPoints(), 1, 2));
   CheckRefused(checks, "normals of two components", cloud, "has 2 components",
     [](vtkAlgorithm* algorithm, auto*) {
       algorithm->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Pairs");
@@ -199,29 +195,16 @@ void TestZeroNormals(Checks& checks)
 void TestWeights(Checks& checks)
 {
   auto cloud = SphereCloud();
-  vtkNew<vtkDoubleArray> weights;
-  weights->SetName("Weight");
-  weights->SetNumberOfComponents(2);
-  weights->SetNumberOfTuples(cloud->GetNumberOfPoints());
-  weights->Fill(1);
-  cloud->GetPointData()->AddArray(weights);
+  cloud->GetPointData()->AddArray(Constant("Weight", cloud->GetNumberOfPoints(), 1, 2));
   CheckRefused(
     checks, "weights of two components", cloud, "row weights has 2 components", ChooseWeights);
 
   auto few = SphereCloud();
-  vtkNew<vtkDoubleArray> tooFew;
-  tooFew->SetName("Weight");
-  tooFew->SetNumberOfTuples(10);
-  tooFew->Fill(1);
-  few->GetPointData()->AddArray(tooFew);
+  few->GetPointData()->AddArray(Constant("Weight", 10, 1));
   CheckRefused(checks, "fewer weights than points", few, "10 tuples for 600 points", ChooseWeights);
 
   auto none = SphereCloud();
-  vtkNew<vtkDoubleArray> zero;
-  zero->SetName("Weight");
-  zero->SetNumberOfTuples(none->GetNumberOfPoints());
-  zero->Fill(0);
-  none->GetPointData()->AddArray(zero);
+  none->GetPointData()->AddArray(Constant("Weight", none->GetNumberOfPoints(), 0));
   CheckRefused(checks, "zero weights", none, "All 600 row weights are zero", ChooseWeights);
 }
 
@@ -413,11 +396,7 @@ void TestBlockWithoutNormals(Checks& checks)
 void TestBlockWithoutWeights(Checks& checks)
 {
   auto weighted = SphereCloud();
-  vtkNew<vtkDoubleArray> weights;
-  weights->SetName("Weight");
-  weights->SetNumberOfTuples(weighted->GetNumberOfPoints());
-  weights->Fill(2);
-  weighted->GetPointData()->AddArray(weights);
+  weighted->GetPointData()->AddArray(Constant("Weight", weighted->GetNumberOfPoints(), 2));
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, weighted);
   blocks->SetBlock(1, SphereCloud(50, 2));
