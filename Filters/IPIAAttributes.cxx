@@ -90,8 +90,8 @@ double AttributeFields::numberOfComponents() const
   return components;
 }
 
-bool AttributeFields::fit(
-  const FitProblem& problem, Identity identity, const ProgressCallback& progress)
+bool AttributeFields::fit(const FitProblem& problem, const PointCloud& cloud, Identity identity,
+  const ProgressCallback& progress)
 {
   for (const PointArray& array : problem.Arrays)
   {
@@ -112,8 +112,8 @@ bool AttributeFields::fit(
     return true;
   }
   this->clear();
-  const bool done = problem.Dimension == 2 ? this->fitInDimension<2>(problem, progress)
-                                           : this->fitInDimension<3>(problem, progress);
+  const bool done = problem.Dimension == 2 ? this->fitInDimension<2>(problem, cloud, progress)
+                                           : this->fitInDimension<3>(problem, cloud, progress);
   if (!done)
   {
     this->clear();
@@ -125,9 +125,9 @@ bool AttributeFields::fit(
 }
 
 template <int Dim>
-bool AttributeFields::fitInDimension(const FitProblem& problem, const ProgressCallback& progress)
+bool AttributeFields::fitInDimension(
+  const FitProblem& problem, const PointCloud& cloud, const ProgressCallback& progress)
 {
-  const PointCloud& cloud = problem.Cloud;
   const auto place = placementOf<Dim>(problem);
   if constexpr (Dim == 2)
   {

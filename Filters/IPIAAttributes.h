@@ -22,10 +22,12 @@ public:
   /**
    * Fits the chosen arrays of a problem on its lattice, unless those are fitted already.
    *
-   * @param identity  of the points and their weights
+   * @param cloud     points of the problem, with the values to fit
+   * @param identity  of these and their weights
    * @return false if the callback aborted; there are no arrays then
    */
-  bool fit(const FitProblem& problem, Identity identity, const ProgressCallback& progress);
+  bool fit(const FitProblem& problem, const PointCloud& cloud, Identity identity,
+    const ProgressCallback& progress);
 
   void clear();
 
@@ -69,7 +71,8 @@ private:
   }
 
   template <int Dim>
-  bool fitInDimension(const FitProblem& problem, const ProgressCallback& progress);
+  bool fitInDimension(
+    const FitProblem& problem, const PointCloud& cloud, const ProgressCallback& progress);
   template <int Dim>
   void evaluateInDimension(const Placement<Dim>& place, vtkPoints* points, vtkPointData* data);
   bool isFree(const PointArray& array, vtkPointData* data);

@@ -2,6 +2,7 @@
 #include "IPIAFitProblem.h"
 
 #include "Core/AutomaticLattice.h"
+#include "Core/LonePoints.h"
 #include "Core/Parallel.h"
 #include "IPIAControlLattice.h"
 #include "IPIAMemory.h"
@@ -270,8 +271,8 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
             place.toLocal(this->Cloud.Positions[static_cast<std::size_t>(k)].data());
         }
       });
-    wanted = (parameters.isClassic() ? ClassicSpacing : HierarchicalSpacing) *
-      pointSpacing(positions, box, 0);
+    wanted = parameters.isClassic() ? ClassicSpacing * pointSpacing(positions, box, 0)
+                                    : HierarchicalSpacing * robustPointSpacing(positions, box, 0);
   }
   const double h = std::min(std::max(wanted, longest / MostSpacings), longest / FewestSpacings);
 

@@ -2,6 +2,7 @@
 #include "IPIAFitSolution.h"
 
 #include "Core/Parallel.h"
+#include "IPIAOrientation.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFitter.h"
 
@@ -281,6 +282,9 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
   solution.NumberOfLevels = static_cast<int>(fitted.Reports.size());
   solution.Noise = fitted.Noise;
   solution.SmoothingLength = fitted.SmoothingLength;
+  solution.FlippedNormals = fitted.Faults.shareOfFlippedNormals();
+  solution.ShareOfOutliers = fitted.Faults.shareOfOutliers();
+  solution.Outliers = fitted.Outliers;
   solution.NumberOfPointsAdded = fitted.NumberOfPointsAdded;
   solution.NumberOfCoefficientsSolved = fitted.numberOfCoefficientsSolved();
   const LevelReport& finest = fitted.Reports.back();
@@ -297,8 +301,10 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
     std::make_shared<const ImplicitSpline<Dim>>(lattice, solution.Bricks->coefficients());
   if (parameters.GenerateSupport)
   {
+    const auto others = withoutPoints(problem.Cloud, fitted.Outliers);
+    const PointCloud& cloud = others ? *others : problem.Cloud;
     solution.Support =
-      scaledSupport(lattice, toLocal(solution.Place, problem.Cloud.Positions), options.Threads);
+      scaledSupport(lattice, toLocal(solution.Place, cloud.Positions), options.Threads);
   }
 }
 
@@ -375,6 +381,13 @@ FitSolution<Dim> solve(const FitProblem& problem, const FitParameters& parameter
   else
   {
     solveHierarchical(lattice, problem, parameters, offsets, progress, incremental, solution);
+  }
+  if (solution.isValid())
+  {
+    const std::string orientation =
+      orientationWarning(problem, *solution.placed(), solution.FlippedNormals);
+    solution.Warning +=
+      text(solution.Warning.empty() || orientation.empty() ? "" : " ", orientation);
   }
   // Arrays of float hold f, whose far field is as large as an offset.
   const double largest = std::max({ solution.Solver.Energy, solution.MaximumError,

@@ -30,6 +30,9 @@ struct FitSolution
   int NumberOfLevels = 1;               ///< of the hierarchy
   double Noise = 0;                     ///< see HierarchicalResult
   double SmoothingLength = 0;           ///< in world units
+  double FlippedNormals = 0;            ///< share of the normals, see SampleFaultCounts
+  double ShareOfOutliers = 0;           ///< of the points
+  std::vector<std::int64_t> Outliers;   ///< these, of the problem's cloud, ascending
   std::int64_t NumberOfPointsAdded = 0; ///< see HierarchicalResult
   std::int64_t NumberOfCoefficientsSolved = 0; ///< on all levels
   std::string Error;   ///< why there is no result; empty otherwise, or if it was aborted

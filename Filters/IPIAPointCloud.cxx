@@ -2,6 +2,7 @@
 #include "IPIAPointCloud.h"
 
 #include "Core/Parallel.h"
+#include "IPIARowWeights.h"
 #include "IPIAText.h"
 
 #include "vtkAlgorithm.h"
@@ -9,7 +10,7 @@
 #include "vtkBoundingBox.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -119,6 +120,7 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
                     "needed; its cells are not used.";
     return;
   }
+  std::vector<vtkDataArray*> ofBlocks; // weights, one for each block
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     vtkDataArray* normals = choose(NormalsIndex, blocks[b]);
@@ -144,7 +146,19 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
       vtkDataArray* values = choose(scalar.Index, blocks[b]);
       this->ChosenArrays.push_back(values);
       const std::size_t inFirst = this->ChosenArrays.size() - 1 - b * (1 + std::size(PointScalars));
-      if (values &&
+      const bool ofBlock = scalar.Index == WeightsIndex && isOfBlock(blocks[b], values);
+      if (ofBlock && (values->GetNumberOfComponents() != 1 || values->GetNumberOfTuples() != 1))
+      {
+        this->Refusal = text("The field data array of ", scalar.Name, " has ",
+          values->GetNumberOfComponents(), " components and ", values->GetNumberOfTuples(),
+          " tuples; it must have one of each, the weight of all points of its block.");
+        return;
+      }
+      if (ofBlock)
+      {
+        ofBlocks.push_back(values);
+      }
+      else if (values &&
         (values->GetNumberOfComponents() != 1 ||
           values->GetNumberOfTuples() != blocks[b]->GetNumberOfPoints()))
       {
@@ -179,7 +193,11 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
     this->Source = append->GetOutput();
   }
   vtkDataArray* normals = choose(NormalsIndex, this->Source);
-  vtkDataArray* weights = choose(WeightsIndex, this->Source);
+  vtkSmartPointer<vtkDataArray> weights = choose(WeightsIndex, this->Source);
+  if (!ofBlocks.empty())
+  {
+    weights = weightsOfBlocks(blocks, ofBlocks);
+  }
   vtkDataArray* fairing = choose(LocalFairingIndex, this->Source);
   if (!normals)
   {
@@ -189,9 +207,13 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
     return;
   }
   const vtkIdType n = this->Source->GetNumberOfPoints();
-  const Found found = this->takePoints(normals, weights, fairing);
+  Found found = this->takePoints(normals, weights, fairing);
   this->LeftOut = found.LeftOut;
   this->Bounds = found.Bounds;
+  if (this->UseNormalLengths && found.AnyNormal)
+  {
+    found.AnyWeight = weighByLength(normals, this->Ids.data(), this->Ids.size(), this->Weights);
+  }
   if (this->Ids.empty())
   {
     this->Refusal =
@@ -353,6 +375,25 @@ void PointCloud::keepIf(const std::function<bool(std::size_t)>& stays)
   this->Ids.resize(kept);
   this->Weights.resize(this->Weights.empty() ? 0 : kept);
   this->LocalFairing.resize(this->LocalFairing.empty() ? 0 : kept);
+}
+
+std::unique_ptr<PointCloud> withoutPoints(
+  const PointCloud& cloud, const std::vector<std::int64_t>& points)
+{
+  if (points.empty())
+  {
+    return nullptr;
+  }
+  auto others = std::make_unique<PointCloud>(cloud);
+  auto next = points.begin();
+  others->keepIf(
+    [&](std::size_t k)
+    {
+      const bool goes = next != points.end() && static_cast<std::size_t>(*next) == k;
+      next += goes;
+      return !goes;
+    });
+  return others;
 }
 
 double PointCloud::longestSide() const

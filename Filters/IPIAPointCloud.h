@@ -13,7 +13,9 @@
 #include "vtkSmartPointer.h"
 
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,6 +50,9 @@ public:
    * (vtkPolyData or nullptr), with the arrays that @a choose names.
    */
   void gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows);
+
+  /// Whether the lengths of normals count as weights, on gather().
+  bool UseNormalLengths = false;
 
   /// Why nothing can be fitted; empty if all is well.
   std::string Refusal;
@@ -119,6 +124,10 @@ private:
   Found takePoints(vtkDataArray* normals, vtkDataArray* weights, vtkDataArray* fairing);
   void gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraRows);
 };
+
+/// A copy without some of the points, whose numbers are ascending; nullptr if there are none.
+std::unique_ptr<PointCloud> withoutPoints(
+  const PointCloud& cloud, const std::vector<std::int64_t>& points);
 }
 
 #endif

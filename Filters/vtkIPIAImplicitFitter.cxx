@@ -28,6 +28,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 
@@ -59,6 +60,8 @@ public:
   /// What points may be added to; nullptr but with Incremental.
   std::unique_ptr<ipia::IncrementalFit<2>> PlanarMemory;
   std::unique_ptr<ipia::IncrementalFit<3>> SpatialMemory;
+  /// The points of the fit, if some were left out.
+  std::unique_ptr<ipia::PointCloud> WithoutOutliers;
   vtkNew<vtkImageData> ControlLattice;
   std::vector<vtkMTimeType> FitIdentity;
   std::vector<double> FitParameters;
@@ -136,6 +139,7 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
   , Tolerance(0)
   , StoppingRule(RelativeResidual)
   , StepSize(0)
+  , UseNormalLengths(false)
   , GenerateGradient(false)
   , GenerateSupport(false)
   , OutputScalarType(VTK_FLOAT)
@@ -278,6 +282,7 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
     return;
   }
   this->State->Current = std::make_unique<ipia::FitProblem>();
+  this->State->Current->Cloud.UseNormalLengths = this->UseNormalLengths;
   this->State->Current->Cloud.gather([this](int index, vtkDataObject* data)
     { return this->GetInputArrayToProcess(index, data); },
     points, extraRows);
@@ -402,6 +407,7 @@ void vtkIPIAImplicitFitter::ResetResults()
   this->Oscillation = this->OffsetDistanceUsed = this->WeightStepSizeUsed = 0;
   this->NumberOfLevelsUsed = 0;
   this->NoiseFound = this->SmoothingLengthUsed = 0;
+  this->FlippedNormalsFound = this->OutliersFound = 0;
   this->NumberOfPointsAdded = this->NumberOfCoefficientsSolved = 0;
   std::fill_n(this->GridSizeUsed, 3, 0);
   vtkMath::UninitializeBounds(this->ModelBoundsUsed);
@@ -455,6 +461,9 @@ bool vtkIPIAImplicitFitter::FitInDimension()
   this->NumberOfLevelsUsed = slot->NumberOfLevels;
   this->NoiseFound = slot->Noise;
   this->SmoothingLengthUsed = slot->SmoothingLength;
+  this->FlippedNormalsFound = slot->FlippedNormals;
+  this->OutliersFound = slot->ShareOfOutliers;
+  this->State->WithoutOutliers = ipia::withoutPoints(this->State->Current->Cloud, slot->Outliers);
   this->NumberOfPointsAdded = slot->NumberOfPointsAdded;
   this->NumberOfCoefficientsSolved = slot->NumberOfCoefficientsSolved;
   this->State->Function->SetSpline(slot->placed());
@@ -486,6 +495,7 @@ bool vtkIPIAImplicitFitter::Fit()
   for (int value : { this->NormalConstraint, this->BasisType, this->OscillationStep,
          this->FairingOrder, this->Solver, this->NumberOfLevels, this->MaximumNumberOfIterations,
          this->StoppingRule, static_cast<int>(this->GenerateSupport), problem.FlatAxis,
+         static_cast<int>(this->UseNormalLengths),
          static_cast<int>(problem.staysInBricks(this->Parameters())) })
   {
     parameters.push_back(value);
@@ -560,7 +570,9 @@ bool vtkIPIAImplicitFitter::FitAttributes()
     return ipia::reportProgress(
       this, ProgressOfFunction + (ProgressOfFit - ProgressOfFunction) * share);
   };
-  const bool done = state.Attributes.fit(*state.Current, identity, progress);
+  state.WithFit([&identity](const auto& fit)
+    { identity.insert(identity.end(), fit.Outliers.begin(), fit.Outliers.end()); });
+  const bool done = state.Attributes.fit(*state.Current, this->FittedCloud(), identity, progress);
   this->WarnOfAttributes();
   if (!done)
   {
@@ -591,6 +603,7 @@ void vtkIPIAImplicitFitter::DiscardFit()
 {
   this->State->Planar.reset();
   this->State->Spatial.reset();
+  this->State->WithoutOutliers.reset();
   this->State->ControlLattice->Initialize();
   this->State->Function->SetControlLattice(nullptr);
   this->ResetResults();
@@ -692,11 +705,25 @@ void vtkIPIAImplicitFitter::WriteFittedPoints(vtkPolyData* output)
   vtkNew<vtkPoints> points;
   points->SetDataType(cloud.Source->GetPoints()->GetDataType());
   points->SetNumberOfPoints(n);
-  vtkNew<vtkDoubleArray> residual, distance;
+  vtkNew<vtkDoubleArray> residual, distance, agreement;
   residual->SetName("Residual");
   distance->SetName("Distance");
+  agreement->SetName("NormalAgreement");
   residual->SetNumberOfTuples(n);
   distance->SetNumberOfTuples(n);
+  agreement->SetNumberOfTuples(n);
+  vtkNew<vtkUnsignedCharArray> outlier;
+  outlier->SetName("Outlier");
+  outlier->SetNumberOfTuples(n);
+  outlier->Fill(0);
+  this->State->WithFit(
+    [&outlier](const auto& fit)
+    {
+      for (const std::int64_t k : fit.Outliers)
+      {
+        outlier->SetValue(k, 1);
+      }
+    });
   for (vtkIdType i = 0; i < n; ++i)
   {
     const auto k = static_cast<std::size_t>(i);
@@ -716,6 +743,8 @@ void vtkIPIAImplicitFitter::WriteFittedPoints(vtkPolyData* output)
         residual->SetValue(i, f);
         // Where f is flat there is no distance to tell; f itself is the best guess.
         distance->SetValue(i, slope > 0 ? f / slope : f);
+        const double along = vtkMath::Dot(cloud.Normals[static_cast<std::size_t>(i)].data(), g);
+        agreement->SetValue(i, slope > 0 ? along / slope : 0.0);
       }
     });
   output->SetPoints(points);
@@ -725,6 +754,8 @@ void vtkIPIAImplicitFitter::WriteFittedPoints(vtkPolyData* output)
   output->GetPointData()->CopyData(cloud.Source->GetPointData(), from, to);
   output->GetPointData()->AddArray(residual);
   output->GetPointData()->AddArray(distance);
+  output->GetPointData()->AddArray(agreement);
+  output->GetPointData()->AddArray(outlier);
   vtkNew<vtkCellArray> vertices;
   vertices->InsertNextCell(to);
   output->SetVerts(vertices);
@@ -743,6 +774,8 @@ void vtkIPIAImplicitFitter::WriteResults(vtkFieldData* field) const
   addResult(field, "NumberOfLevelsUsed", this->NumberOfLevelsUsed);
   addResult(field, "NoiseFound", this->NoiseFound);
   addResult(field, "SmoothingLengthUsed", this->SmoothingLengthUsed);
+  addResult(field, "FlippedNormalsFound", this->FlippedNormalsFound);
+  addResult(field, "OutliersFound", this->OutliersFound);
   addResult(field, "NumberOfPointsAdded", static_cast<double>(this->NumberOfPointsAdded));
   addResult(
     field, "NumberOfCoefficientsSolved", static_cast<double>(this->NumberOfCoefficientsSolved));
@@ -858,7 +891,7 @@ bool vtkIPIAImplicitFitter::ContourBricks(int pointType,
 
 const ipia::PointCloud& vtkIPIAImplicitFitter::FittedCloud() const
 {
-  return this->State->Current->Cloud;
+  return this->State->WithoutOutliers ? *this->State->WithoutOutliers : this->State->Current->Cloud;
 }
 
 const ipia::Frame& vtkIPIAImplicitFitter::FittedFrame() const
@@ -894,6 +927,7 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "StoppingRule: " << this->StoppingRule << "\n";
   os << indent << "StepSize: " << this->StepSize << "\n";
+  os << indent << "UseNormalLengths: " << this->UseNormalLengths << "\n";
   os << indent << "GenerateGradient: " << this->GenerateGradient << "\n";
   os << indent << "GenerateSupport: " << this->GenerateSupport << "\n";
   os << indent << "OutputScalarType: " << this->OutputScalarType << "\n";
@@ -912,6 +946,8 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfLevelsUsed: " << this->NumberOfLevelsUsed << "\n";
   os << indent << "NoiseFound: " << this->NoiseFound << "\n";
   os << indent << "SmoothingLengthUsed: " << this->SmoothingLengthUsed << "\n";
+  os << indent << "FlippedNormalsFound: " << this->FlippedNormalsFound << "\n";
+  os << indent << "OutliersFound: " << this->OutliersFound << "\n";
   os << indent << "NumberOfPointsAdded: " << this->NumberOfPointsAdded << "\n";
   os << indent << "NumberOfCoefficientsSolved: " << this->NumberOfCoefficientsSolved << "\n";
   os << indent << "GridSizeUsed: " << triple(this->GridSizeUsed) << "\n";

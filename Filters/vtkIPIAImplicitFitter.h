@@ -91,10 +91,11 @@
  * ### Input
  * Port 0: vtkPolyData, of which the points are used (cells are not), or a composite data set of
  * them, all of whose blocks make one fit. SetInputArrayToProcess: 0, the normals (3 components;
- * default: the active point normals); 1, optional row weights w_k >= 0 (1 component); 3, optional
- * local fairing weights > 0 (1 component, of the hierarchy): around points where it is 10 the
- * fairing energy counts tenfold against the data, so that f is smoother there, where it is 0.1 a
- * tenth; 1 is as without. Any numeric type. Normals need not have unit length.
+ * default: the active point normals); 1, optional row weights w_k >= 0 (1 component), for each
+ * point or, with FIELD_ASSOCIATION_NONE, one for all points of a block in its field data; 3,
+ * optional local fairing weights > 0 (1 component, of the hierarchy): around points where it is 10
+ * the fairing energy counts tenfold against the data, so that f is smoother there, where it is 0.1
+ * a tenth; 1 is as without. Any numeric type. Normals need not have unit length.
  *
  * Port 1, optional: vtkPolyData with more rows, points at which f shall take a given value, of
  * weight
@@ -112,8 +113,8 @@
  * missing, not in front, or have other positions, normals, weights or local fairing weights, bit
  * for bit; with offset rows; where extra rows have changed. The smoothing length stays that of the
  * last fit; where it is not 0, or points were too sparse to tell, all is fitted again once there
- * are twice as many points, and where it is 0, once added points are noisy. In the plane as in
- * space.
+ * are twice as many points, and where it is 0, once added points are noisy. So it is where added
+ * points have outliers or flipped normals. In the plane as in space.
  *
  * After an addition Energy, NumberOfIterationsUsed and ResidualHistory are of the rows near the
  * added points, and NoiseFound is made of the last one and that of the added points.
@@ -122,8 +123,10 @@
  * Port 0: vtkImageData with point scalars `f`, on request `Gradient` and `Support`, and the point
  * arrays of the input; the results below as field data. Origin and last point are the ends of the
  * domain. Any sub-extent can be asked for. Port 1: the points that were fitted, with all their
- * arrays, and `Residual` (f) and `Distance` (f / |grad f|). Port 2: the control lattice, a
- * vtkImageData with point array `Coefficient`, with UniformRational also `Weight`, origin lo - h,
+ * arrays, `Residual` (f), `Distance` (f / |grad f|), `NormalAgreement` (n . grad f / |grad f|,
+ * negative where the normal points against f, 0 where there is none) and `Outlier` (1 where the
+ * point was left out as one, else 0). Port 2: the control lattice,
+ * a vtkImageData with point array `Coefficient`, with UniformRational also `Weight`, origin lo - h,
  * spacing h and dimensions N, on domain [lo, hi], and the far field as field data: `FarField`, one
  * signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1) (2 (N_z - 3) + 1) boxes (no third
  * factor in 2-D), x fastest, -1 or 1 where f is that sign times `FarFieldMagnitude` (one double), 0
@@ -141,6 +144,20 @@
  * ModelBoundsUsed are along its axes, ModelBounds must be unset, and f does not change across the
  * plane. vtkFlyingEdges2D and vtkFlyingEdges3D draw in such an image, filters that do not know
  * direction matrices draw in a wrong place.
+ *
+ * ### Faulty input
+ * The hierarchy compares all points with the fit of its finest level that they overdetermine, of at
+ * least 3 points per occupied cell. Points that are far from what the others agree on are outliers;
+ * normals that point against the gradient and against those around them are flipped. Where these
+ * are more than a few (0.05 and 0.5 %) the fit starts again without the outliers and without the
+ * rows of the flipped normals. This is for up to about 5 % of outliers and up to a quarter of
+ * normals that are flipped here and there. Outliers do not count for what follows a fit either,
+ * such as point arrays and where a surface is trimmed. Normals that are flipped together on a whole
+ * patch of the surface agree with their neighbours and are not found, nor are faults of points that
+ * are too sparse for such a level. OutliersFound and FlippedNormalsFound are the shares; one
+ * warning tells of flipped normals from 1 % on, and of a closed surface that is inside out: f is
+ * negative at the whole border of the domain. Scans from within, such as of rooms, get that too,
+ * and are right.
  *
  * ### Errors
  * Refused with one error and empty outputs: no points, one point, all points equal or (in 3-D) on a
@@ -462,6 +479,17 @@ public:
 
   ///@{
   /**
+   * Multiply each point's row weight by the length of its normal over the median of these lengths:
+   * its confidence, as some scanners and normal estimators give it. A point without a normal then
+   * has none. Default off: lengths do not count.
+   */
+  vtkSetMacro(UseNormalLengths, bool);
+  vtkGetMacro(UseNormalLengths, bool);
+  vtkBooleanMacro(UseNormalLengths, bool);
+  ///@}
+
+  ///@{
+  /**
    * Add the exact gradient of f to output 0 as `Gradient`. Default off.
    */
   vtkSetMacro(GenerateGradient, bool);
@@ -523,9 +551,10 @@ public:
    * points. NoiseFound is the root mean square distance (world units) of the points from f = 0 on
    * the finest level that they alone determine, 0 if they are too sparse for any or FairingWeight
    * is set; SmoothingLengthUsed (world units) the length below which noise is smoothed away, 0 on
-   * clean data. NumberOfPointsAdded is the number of points that were added to an earlier fit, 0 if
-   * all points were fitted; NumberOfCoefficientsSolved that of coefficients solved for, on all
-   * levels.
+   * clean data. FlippedNormalsFound is the share of the normals, OutliersFound that of the points,
+   * that the hierarchy left out, see "Faulty input"; AverageError and MaximumError count these.
+   * NumberOfPointsAdded is the number of points that were added to an earlier fit, 0 if all points
+   * were fitted; NumberOfCoefficientsSolved that of coefficients solved for, on all levels.
    */
   vtkGetMacro(NumberOfIterationsUsed, int);
   vtkGetMacro(StepSizeUsed, double);
@@ -538,6 +567,8 @@ public:
   vtkGetMacro(NumberOfLevelsUsed, int);
   vtkGetMacro(NoiseFound, double);
   vtkGetMacro(SmoothingLengthUsed, double);
+  vtkGetMacro(FlippedNormalsFound, double);
+  vtkGetMacro(OutliersFound, double);
   vtkGetMacro(NumberOfPointsAdded, vtkIdType);
   vtkGetMacro(NumberOfCoefficientsSolved, vtkIdType);
   vtkGetVector3Macro(GridSizeUsed, int);
@@ -595,6 +626,7 @@ protected:
   double Tolerance;
   int StoppingRule;
   double StepSize;
+  bool UseNormalLengths;
   bool GenerateGradient;
   bool GenerateSupport;
   int OutputScalarType;
@@ -611,6 +643,8 @@ protected:
   int NumberOfLevelsUsed;
   double NoiseFound;
   double SmoothingLengthUsed;
+  double FlippedNormalsFound;
+  double OutliersFound;
   vtkIdType NumberOfPointsAdded;
   vtkIdType NumberOfCoefficientsSolved;
   int GridSizeUsed[3];

@@ -56,21 +56,47 @@ Sum sumOverValues(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
     });
 }
 
+/// The number of levels, from the coarsest, up to the finest that the points alone determine.
+template <int Dim>
+std::size_t determinedLevels(const std::vector<Level<Dim>>& levels, int threads)
+{
+  const auto n = static_cast<double>(levels.back().points().size());
+  std::size_t found = levels.size();
+  while (found > 0 && n < PointsPerDeterminedCell * occupiedCells(levels[found - 1], threads))
+  {
+    --found;
+  }
+  return found;
+}
 }
 
 template <int Dim>
-Misses missesOf(
-  const Level<Dim>& level, const BrickLattice<Dim>& bricks, const Samples<Dim>& points, int threads)
+Misses missesOf(const Level<Dim>& level, const BrickLattice<Dim>& bricks,
+  const Samples<Dim>& points, int threads, std::vector<SampleCheck>* checks)
 {
+  if (checks)
+  {
+    checks->resize(points.size());
+  }
+  const double spacing = level.Grid.Spacing.mean();
   return sumOverValues<Misses>(level, bricks, points, threads,
-    [](const Sample<Dim>& sample, double f, const Point<Dim>& gradient)
+    [&](const Sample<Dim>& sample, double f, const Point<Dim>& gradient)
     {
       Misses one;
+      const double slope = gradient.norm();
+      const double distance = f / std::max(slope, LeastSlope);
       if (sample.HasNormal)
       {
-        const double distance = f / std::max(gradient.norm(), LeastSlope);
         one.Distances = distance * distance;
         one.Oriented = 1;
+      }
+      if (checks)
+      {
+        SampleCheck& check = (*checks)[static_cast<std::size_t>(&sample - points.data())];
+        check.Distance = static_cast<float>(distance / spacing);
+        check.Agreement = sample.HasNormal && slope > 0
+          ? static_cast<float>(gradient.dot(sample.Normal) / slope)
+          : 1.F;
       }
       if (!sample.IsExtra)
       {
@@ -80,6 +106,20 @@ Misses missesOf(
       }
       return one;
     });
+}
+
+template <int Dim>
+Misses missesOf(const BrickSpline<Dim>& function, const Samples<Dim>& samples)
+{
+  Misses misses;
+  for (const Sample<Dim>& sample : samples)
+  {
+    const double f = function.value(sample.Position.cwiseProduct(function.lattice().Spacing));
+    misses.Values += f * f;
+    misses.Largest = std::max(misses.Largest, std::abs(f));
+  }
+  misses.Points = static_cast<double>(samples.size());
+  return misses;
 }
 
 bool isNoise(double noise, double spacing, const std::function<double()>& noiseBefore)
@@ -168,62 +208,83 @@ double validatedSmoothing(const std::vector<Level<Dim>>& levels,
 
 template <int Dim>
 HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInput<Dim> input,
-  const HierarchicalOptions& options, const ProgressCallback& progress,
-  std::vector<Level<Dim>>* usedLevels)
+  const HierarchicalOptions& options, const ProgressCallback& progress, FittedData<Dim>* fitted)
 {
   const int threads = resolveThreads(options.Threads);
   HierarchicalResult<Dim> result;
-  Samples<Dim> samples = sortedSamples(lattice, input, threads);
-  input = {};
-  std::vector<Level<Dim>> levels = makeLevels(lattice, std::move(samples), options, threads);
-  std::vector<BrickLattice<Dim>> bricks = makeBricks(levels, threads);
-
-  const auto solveAndReport = [&](std::size_t l)
+  std::vector<Level<Dim>> levels;
+  std::vector<BrickLattice<Dim>> bricks;
+  std::size_t next = 0;
+  const auto startWith = [&](Samples<Dim> samples)
   {
-    const auto share = [&](double ofLevel)
+    levels = makeLevels(lattice, std::move(samples), options, threads);
+    bricks = makeBricks(levels, threads);
+    result.Reports.clear();
+    result.DeterminedLevels = determinedLevels(levels, threads);
+    next = 0;
+  };
+  const auto solveUpTo = [&](std::size_t end)
+  {
+    for (; next < end && !result.Aborted; ++next)
     {
-      return !progress ||
-        progress((static_cast<double>(l) + ofLevel) / static_cast<double>(levels.size()));
-    };
-    result.Reports.push_back(
-      solveLevel(levels, bricks, l, result.SmoothingLength, options, threads, share));
-    result.Aborted = result.Reports.back().Aborted;
+      const auto share = [&](double ofLevel)
+      {
+        return !progress ||
+          progress((static_cast<double>(next) + ofLevel) / static_cast<double>(levels.size()));
+      };
+      result.Reports.push_back(
+        solveLevel(levels, bricks, next, result.SmoothingLength, options, threads, share));
+      result.Aborted = result.Reports.back().Aborted;
+    }
     return !result.Aborted;
   };
 
-  // The finest level that the points alone determine tells how noisy they are.
-  const Samples<Dim>& points = levels.back().points();
-  const auto n = static_cast<double>(points.size());
-  std::size_t gate = options.SmoothingLength < 0 ? levels.size() : 0; // counted from 1, 0: none
-  while (gate > 0 && n < PointsPerDeterminedCell * occupiedCells(levels[gate - 1], threads))
-  {
-    --gate;
-  }
-  result.DeterminedLevels = gate;
-  std::size_t next = 0;
-  Misses misses;
   result.SmoothingLength = std::max(options.SmoothingLength, 0.0);
-  if (gate > 0)
+  std::vector<std::int64_t> rows;
+  Samples<Dim> samples = sortedSamples(lattice, input, threads, &rows);
+  input = {};
+  SampleJudge<Dim> judge(samples, std::move(rows));
+  startWith(std::move(samples));
+
+  // The finest level that the points alone determine tells how noisy they are, and which of them
+  // contradict the others; without these the fit starts again.
+  Misses misses;
+  const auto correct = [&]
   {
-    for (; next < gate; ++next)
+    std::vector<SampleCheck> checks;
+    const std::size_t last = result.DeterminedLevels - 1;
+    misses = missesOf(levels[last], bricks[last], levels.back().points(), threads,
+      judge.isDone() ? nullptr : &checks);
+    return judge.correct(levels.back().points(), checks, threads);
+  };
+  while (result.DeterminedLevels > 0)
+  {
+    if (!solveUpTo(result.DeterminedLevels))
     {
-      if (!solveAndReport(next))
-      {
-        return result;
-      }
+      return result;
     }
-    const std::size_t last = gate - 1;
-    misses = missesOf(levels[last], bricks[last], points, threads);
+    if (!correct())
+    {
+      break;
+    }
+    startWith(std::move(levels.back().points()));
+  }
+  result.Faults = judge.counts();
+  result.Outliers = judge.outlierRows();
+
+  if (result.DeterminedLevels > 0 && options.SmoothingLength < 0)
+  {
+    const std::size_t last = result.DeterminedLevels - 1;
     result.Noise = misses.noise();
-    const auto before = [&] {
-      return last > 0 ? missesOf(levels[last - 1], bricks[last - 1], points, threads).noise() : 0;
+    const auto before = [&]
+    {
+      return last > 0
+        ? missesOf(levels[last - 1], bricks[last - 1], levels.back().points(), threads).noise()
+        : 0;
     };
     if (isNoise(result.Noise, levels[last].Grid.Spacing.mean(), before))
     {
       result.SmoothingLength = validatedSmoothing(levels, bricks, options, threads);
-    }
-    if (result.SmoothingLength > 0)
-    {
       // Start again, with smoothing on all levels.
       result.Reports.clear();
       next = 0;
@@ -231,30 +292,30 @@ HierarchicalResult<Dim> fitHierarchical(const Lattice<Dim>& lattice, HermiteInpu
   }
   if (next < levels.size())
   {
-    for (; next < levels.size(); ++next)
+    if (!solveUpTo(levels.size()))
     {
-      if (!solveAndReport(next))
-      {
-        return result;
-      }
+      return result;
     }
-    misses = missesOf(levels.back(), bricks.back(), points, threads);
+    misses = missesOf(levels.back(), bricks.back(), levels.back().points(), threads);
   }
-  LevelReport& finest = result.Reports.back();
-  finest.AverageError = misses.Points > 0 ? misses.Values / misses.Points : 0;
-  finest.MaximumError = misses.Largest;
   result.Function = std::make_shared<const BrickSpline<Dim>>(std::move(bricks));
-  if (usedLevels)
+  misses += missesOf(*result.Function, judge.outliers());
+  result.reportErrors(misses);
+  if (fitted)
   {
-    *usedLevels = std::move(levels);
+    *fitted = { std::move(levels), std::move(judge.outliers()) };
   }
   return result;
 }
 
-template Misses missesOf<2>(const Level<2>&, const BrickLattice<2>&, const Samples<2>&, int);
+template Misses missesOf<2>(
+  const Level<2>&, const BrickLattice<2>&, const Samples<2>&, int, std::vector<SampleCheck>*);
+template Misses missesOf<2>(const BrickSpline<2>&, const Samples<2>&);
 template HierarchicalResult<2> fitHierarchical<2>(const Lattice<2>&, HermiteInput<2>,
-  const HierarchicalOptions&, const ProgressCallback&, std::vector<Level<2>>*);
-template Misses missesOf<3>(const Level<3>&, const BrickLattice<3>&, const Samples<3>&, int);
+  const HierarchicalOptions&, const ProgressCallback&, FittedData<2>*);
+template Misses missesOf<3>(
+  const Level<3>&, const BrickLattice<3>&, const Samples<3>&, int, std::vector<SampleCheck>*);
+template Misses missesOf<3>(const BrickSpline<3>&, const Samples<3>&);
 template HierarchicalResult<3> fitHierarchical<3>(const Lattice<3>&, HermiteInput<3>,
-  const HierarchicalOptions&, const ProgressCallback&, std::vector<Level<3>>*);
+  const HierarchicalOptions&, const ProgressCallback&, FittedData<3>*);
 }

@@ -88,6 +88,7 @@ struct Level
   {
     return this->Unclustered.empty() ? this->Data : this->Unclustered;
   }
+  Samples<Dim>& points() { return this->Unclustered.empty() ? this->Data : this->Unclustered; }
 
   /// A position in cells of this level.
   Point<Dim> positionOf(const Sample<Dim>& sample) const

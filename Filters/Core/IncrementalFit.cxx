@@ -452,8 +452,10 @@ HierarchicalResult<Dim> IncrementalFit<Dim>::fit(const Lattice<Dim>& lattice,
     !this->add(withoutFirst(input, this->Input.Positions.cols()), progress, result))
   {
     this->Last = {};
-    this->Levels.clear();
-    result = fitHierarchical(lattice, input, options, progress, &this->Levels);
+    FittedData<Dim> fitted;
+    result = fitHierarchical(lattice, input, options, progress, &fitted);
+    this->Levels = std::move(fitted.Levels);
+    this->Outliers = std::move(fitted.Outliers);
     this->PointsOfLength = input.Positions.cols();
     this->Data.clear();
     this->Points.assign(1, {});
@@ -567,29 +569,40 @@ bool IncrementalFit<Dim>::add(
     report.Seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     coarser = std::move(changing);
-    if (gated && l + 1 == this->Last.DeterminedLevels)
+    if (l + 1 == this->Last.DeterminedLevels)
     {
-      const auto n = static_cast<double>(samples.size());
-      const auto kept = static_cast<double>(this->Input.Positions.cols());
-      const double noise = missesOf(level, bricks[l], samples, threads).noise();
-      result.Noise =
-        std::sqrt((n * noise * noise + kept * this->Last.Noise * this->Last.Noise) / (n + kept));
-      const auto before = [&] {
-        return l > 0 ? this->missesOfAll(levels[l - 1], bricks[l - 1], samples, threads).noise()
-                     : 0.0;
-      };
-      if (isNoise(result.Noise, level.Grid.Spacing.mean(), before))
+      std::vector<SampleCheck> checks;
+      const Misses ofAdded = missesOf(level, bricks[l], samples, threads, &checks);
+      const SampleFaults faults = findFaults(samples, checks, {}, threads);
+      if (faults.Outliers + faults.Flipped > 0)
       {
         return false;
       }
+      result.Faults.Samples += static_cast<double>(samples.size());
+      result.Faults.Normals += ofAdded.Oriented;
+      if (gated)
+      {
+        const auto n = static_cast<double>(samples.size());
+        const auto kept = static_cast<double>(this->Input.Positions.cols());
+        const double noise = ofAdded.noise();
+        result.Noise =
+          std::sqrt((n * noise * noise + kept * this->Last.Noise * this->Last.Noise) / (n + kept));
+        const auto before = [&] {
+          return l > 0 ? this->missesOfAll(levels[l - 1], bricks[l - 1], samples, threads).noise()
+                       : 0.0;
+        };
+        if (isNoise(result.Noise, level.Grid.Spacing.mean(), before))
+        {
+          return false;
+        }
+      }
     }
   }
-  const Misses misses = this->missesOfAll(levels.back(), bricks.back(), samples, threads);
+  Misses misses = this->missesOfAll(levels.back(), bricks.back(), samples, threads);
   this->Points.push_back(std::move(samples));
-  LevelReport& finest = result.Reports.back();
-  finest.AverageError = misses.Points > 0 ? misses.Values / misses.Points : 0;
-  finest.MaximumError = misses.Largest;
   result.Function = std::make_shared<const BrickSpline<Dim>>(std::move(bricks));
+  misses += missesOf(*result.Function, this->Outliers);
+  result.reportErrors(misses);
   return true;
 }
 

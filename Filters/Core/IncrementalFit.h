@@ -43,7 +43,8 @@ public:
    * As fitHierarchical(), or the last fit with points added: if lattice and options are those of
    * the last fit, the input begins with its points, bit for bit, and has the same extra rows. The
    * smoothing length stays that of the last fit; all is fitted again if clean data are joined by
-   * points that are noisy, or the points have doubled since a length was found.
+   * points that are noisy, the points have doubled since a length was found, or there are faults
+   * among the added ones.
    */
   HierarchicalResult<Dim> fit(const Lattice<Dim>& lattice, HermiteInput<Dim> input,
     const HierarchicalOptions& options, const ProgressCallback& progress = {});
@@ -64,6 +65,7 @@ private:
   /// each addition since, so that an addition need not touch the others.
   std::vector<std::vector<Samples<Dim>>> Data;
   std::vector<Samples<Dim>> Points;
+  Samples<Dim> Outliers;           ///< that the last fit of all left out
   HierarchicalResult<Dim> Last;    ///< its Function is nullptr if there is none
   std::int64_t PointsOfLength = 0; ///< number of points that the smoothing length was found with
 };

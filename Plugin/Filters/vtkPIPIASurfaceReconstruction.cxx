@@ -129,6 +129,11 @@ void vtkPIPIASurfaceReconstruction::SetStepSize(double value)
   this->GetFitter()->SetStepSize(value);
 }
 
+void vtkPIPIASurfaceReconstruction::SetUseNormalLengths(bool value)
+{
+  this->GetFitter()->SetUseNormalLengths(value);
+}
+
 void vtkPIPIASurfaceReconstruction::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {

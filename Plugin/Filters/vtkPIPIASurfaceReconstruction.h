@@ -71,6 +71,7 @@ public:
   void SetTolerance(double value);
   void SetStoppingRule(int value);
   void SetStepSize(double value);
+  void SetUseNormalLengths(bool value);
   ///@}
 
   /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the

@@ -225,6 +225,66 @@ TEST(IncrementalFitOfViews, FitsAllAgainWhenNoisyPointsJoinCleanOnes)
   EXPECT_TRUE(isSameFunction(result, fitHierarchical(lattice, mixed, options)));
 }
 
+/// With points anywhere in the domain in front.
+HermiteInput<3> withOutliers(const HermiteInput<3>& points, Eigen::Index n)
+{
+  test::Random random(17);
+  HermiteInput<3> outliers;
+  outliers.Positions.resize(3, n);
+  outliers.Normals.resize(3, n);
+  for (Eigen::Index k = 0; k < n; ++k)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      outliers.Positions(a, k) = random.uniform(0.05, 0.95);
+      outliers.Normals(a, k) = random.uniform(-1, 1);
+    }
+    outliers.Normals.col(k).normalize();
+  }
+  return joined(outliers, points);
+}
+
+TEST(IncrementalFitOfViews, AddsToAFitThatLeftOutliersOut)
+{
+  const Lattice<3> lattice = unitLattice<3>(64);
+  const HierarchicalOptions options;
+  IncrementalFit<3> incremental;
+  const auto first = incremental.fit(lattice, withOutliers(torusViews(9, 6000), 1000), options);
+  EXPECT_GT(first.Outliers.size(), 500u);
+  EXPECT_LT(first.Outliers.back(), 1000) << "no point of the torus";
+  const auto ten = withOutliers(torusViews(10, 6000), 1000);
+  const auto added = incremental.fit(lattice, ten, options);
+  EXPECT_EQ(added.NumberOfPointsAdded, 6000);
+  EXPECT_EQ(added.Outliers, first.Outliers);
+  EXPECT_DOUBLE_EQ(
+    added.Faults.shareOfOutliers(), static_cast<double>(first.Outliers.size()) / 61000);
+  EXPECT_GT(added.Reports.back().MaximumError, 0.9 * first.Reports.back().MaximumError)
+    << "the errors are those of all points";
+  EXPECT_LT(difference(added, fitHierarchical(lattice, ten, options), torusViews(10, 6000)), 1e-3);
+}
+
+TEST(IncrementalFitOfViews, FitsAllAgainWhenAddedPointsAreFaulty)
+{
+  const Lattice<3> lattice = unitLattice<3>(64);
+  const HierarchicalOptions options;
+  IncrementalFit<3> incremental;
+  const auto clean = torusViews(9, 6000);
+  auto flipped = torusView(9, 6000);
+  for (Eigen::Index k = 0; k < flipped.Normals.cols(); k += 10)
+  {
+    flipped.Normals.col(k) *= -1;
+  }
+  for (const auto& view : { withOutliers(torusView(9, 6000), 300), flipped })
+  {
+    EXPECT_EQ(incremental.fit(lattice, clean, options).Faults.shareOfOutliers(), 0);
+    const auto all = joined(clean, view);
+    const auto result = incremental.fit(lattice, all, options);
+    EXPECT_EQ(result.NumberOfPointsAdded, 0);
+    EXPECT_TRUE(isSameFunction(result, fitHierarchical(lattice, all, options)));
+    EXPECT_GT(result.Faults.Outliers + result.Faults.Flipped, 200);
+  }
+}
+
 /// A wavy sphere without a cap, and the cap.
 constexpr double CapHeight = 0.26;
 
