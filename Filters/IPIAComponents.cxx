@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IPIAComponents.h"
 
+#include "IPIACells.h"
+
 #include "vtkBoundingBox.h"
-#include "vtkCellArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
-#include "vtkPolyData.h"
 #include "vtkStaticPointLocator.h"
 
 #include <algorithm>
@@ -20,18 +20,6 @@ constexpr double LeastShareOfData = 0.02;
 /// And at least so many, of a hundred times as many in all: what a blob of the size of one basis
 /// function's slope, two and a half knot spacings, carries.
 constexpr double LeastData = 24;
-
-/// Calls action(number of points, point ids) for every cell of an array.
-template <typename Action>
-void forCells(vtkCellArray* cells, const Action& action)
-{
-  vtkIdType n = 0;
-  const vtkIdType* ids = nullptr;
-  for (cells->InitTraversal(); cells->GetNextCell(n, ids);)
-  {
-    action(n, ids);
-  }
-}
 
 /// How many data points are nearer to the component than to any other.
 double dataOf(vtkPolyData* surface, const std::vector<vtkIdType>& component, vtkIdType label,

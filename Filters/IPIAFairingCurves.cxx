@@ -3,6 +3,7 @@
 #include "IPIAFairingCurves.h"
 
 #include "Core/Parametrization.h"
+#include "IPIAEarlierRound.h"
 #include "IPIAText.h"
 
 #include "vtkCellArray.h"
@@ -158,14 +159,9 @@ std::string vtkFairingPIACurveFilter::Curves::readEarlierRound()
     }
   }
   ipia::EarlierKnots knots;
-  std::string refusal = knots.read(field, this->Rounds.size(), periodic,
-    [](std::size_t k) { return "curve " + std::to_string(k); });
-  const int p = knots.Degree;
-  if (refusal.empty() && this->Filter->DerivativeOrder > p)
-  {
-    return ipia::text("DerivativeOrder is ", this->Filter->DerivativeOrder,
-      " and the control points on port 1 are of degree ", p, ". Set a lower DerivativeOrder.");
-  }
+  std::string refusal = knots.read(
+    field, this->Rounds.size(), periodic,
+    [](std::size_t k) { return "curve " + std::to_string(k); }, this->Filter->DerivativeOrder);
   if (!refusal.empty())
   {
     return refusal;
@@ -174,60 +170,19 @@ std::string vtkFairingPIACurveFilter::Curves::readEarlierRound()
   for (std::size_t k = 0; k < this->Rounds.size(); ++k)
   {
     ipia::BSplineBasis& basis = this->Rounds[k].Spline.Axes[0];
-    basis = periodic[k] ? ipia::BSplineBasis::periodic(p, knots.Interior[k])
-                        : ipia::BSplineBasis::clamped(p, knots.Interior[k]);
+    basis = periodic[k] ? ipia::BSplineBasis::periodic(knots.Degree, knots.Interior[k])
+                        : ipia::BSplineBasis::clamped(knots.Degree, knots.Interior[k]);
     total += basis.size();
   }
-  if (total != this->Controls->GetNumberOfPoints())
-  {
-    return ipia::text("The knots on port 1 ask for ", total, " control points, ",
-      this->Controls->GetNumberOfPoints(), " are there. Connect output 1 of an earlier round.");
-  }
-  vtkDataArray *weights = nullptr, *movable = nullptr;
-  refusal = ipia::chooseArray(
-    this->Filter, 1, this->Controls, 1, "fairing weights of control points", weights);
-  refusal = refusal.empty()
-    ? ipia::chooseArray(this->Filter, 2, this->Controls, 1, "control points that may move", movable)
-    : refusal;
-  if (!refusal.empty())
-  {
-    return refusal;
-  }
+  ipia::EarlierControls controls;
+  refusal = controls.read(this->Filter, this->Controls, total);
   vtkIdType first = 0;
-  for (std::size_t k = 0; k < this->Rounds.size(); ++k)
+  for (std::size_t k = 0; refusal.empty() && k < this->Rounds.size(); ++k)
   {
-    ipia::FairingRound& round = this->Rounds[k];
-    const std::int64_t n = round.Spline.size();
-    round.Spline.ControlPoints.resize(n, 3);
-    round.ControlWeights.resize(weights ? n : 0);
-    round.Movable.resize(movable ? n : 0);
-    for (std::int64_t j = 0; j < n; ++j)
-    {
-      double x[3];
-      this->Controls->GetPoint(first + j, x);
-      for (int c = 0; c < 3; ++c)
-      {
-        round.Spline.ControlPoints(j, c) = x[c] - round.Centre[c];
-      }
-      if (weights)
-      {
-        round.ControlWeights[j] = weights->GetComponent(first + j, 0);
-      }
-      if (movable)
-      {
-        round.Movable[j] = movable->GetComponent(first + j, 0);
-      }
-    }
-    refusal =
-      ipia::checkControlPoints(round.Spline.ControlPoints, " of curve " + std::to_string(k));
-    refusal = refusal.empty() ? ipia::checkMovable(round.Movable) : refusal;
-    if (!refusal.empty())
-    {
-      return refusal;
-    }
-    first += n;
+    refusal = controls.give(first, " of curve " + std::to_string(k), this->Rounds[k]);
+    first += this->Rounds[k].Spline.size();
   }
-  return {};
+  return refusal;
 }
 
 std::string vtkFairingPIACurveFilter::Curves::start(
@@ -321,13 +276,7 @@ std::string vtkFairingPIACurveFilter::Curves::read(const ipia::FairingParameters
   }
   if (this->Controls)
   {
-    refusal = this->readEarlierRound();
-    for (std::size_t k = 0; refusal.empty() && k < this->Rounds.size(); ++k)
-    {
-      refusal = ipia::checkWeights(this->Rounds[k].ControlWeights,
-        ipia::nameOf(this->Filter->GetInputArrayToProcess(1, this->Controls)));
-    }
-    return refusal;
+    return this->readEarlierRound();
   }
   for (std::size_t k = 0; k < this->Lines.size(); ++k)
   {

@@ -29,9 +29,6 @@ namespace
 /// Of SetInputArrayToProcess; the array that has a default.
 constexpr int ControlWeightsIndex = 1;
 
-/// Extents outside of it, cubed and divided by, leave the range of double.
-constexpr double LargestExtent = 1e100, SmallestExtent = 1e-100;
-
 /// Bytes that a fit needs per data point, and per control point with all that its iteration keeps.
 constexpr double BytesPerDataPoint = 200, BytesPerControlPoint = 800;
 /// And per entry of a matrix that is factorised, with its share of the factors for each doubling of
@@ -385,57 +382,6 @@ std::string FairingRound::run(const FairingParameters& p, const ProgressCallback
   return {};
 }
 
-double fieldNumber(vtkFieldData* field, const char* name, vtkIdType tuple)
-{
-  vtkDataArray* array = field->GetArray(name);
-  return array && array->GetNumberOfComponents() == 1 && tuple >= 0 &&
-      tuple < array->GetNumberOfTuples()
-    ? array->GetComponent(tuple, 0)
-    : std::numeric_limits<double>::quiet_NaN();
-}
-
-std::string EarlierKnots::read(vtkFieldData* field, std::size_t count,
-  const std::vector<bool>& periodic, const std::function<std::string(std::size_t)>& name)
-{
-  const double degree = fieldNumber(field, "Degree", 0);
-  if (!(degree >= 1 && degree <= BSplineBasis::MaximumDegree))
-  {
-    return text("The Degree of the control points on port 1 is ", degree, "; 1 to 5 are possible.");
-  }
-  this->Degree = static_cast<int>(degree);
-  const int p = this->Degree;
-  vtkDataArray* knots = field->GetArray("Knots");
-  const auto tuples = static_cast<double>(knots ? knots->GetNumberOfTuples() : 0);
-  this->Interior.assign(count, {});
-  for (std::size_t k = 0; k < count; ++k)
-  {
-    const auto tuple = static_cast<vtkIdType>(k);
-    const double begin = fieldNumber(field, "KnotOffsets", tuple);
-    const double end = fieldNumber(field, "KnotOffsets", tuple + 1);
-    if (!(begin >= 0 && end >= begin && end <= tuples))
-    {
-      return text("The KnotOffsets on port 1 go from ", begin, " to ", end, " for ", name(k),
-        ", and there are ", tuples, " Knots. Connect output 1 of an earlier round.");
-    }
-    std::vector<double>& interior = this->Interior[k];
-    const auto last = static_cast<vtkIdType>(end) - p - 1;
-    for (vtkIdType i = static_cast<vtkIdType>(begin) + p + 1; i < last; ++i)
-    {
-      interior.push_back(fieldNumber(field, "Knots", i));
-    }
-    const auto isInside = [](double knot) { return knot > 0 && knot < 1; };
-    if (end - begin < 2 * p + 2 || !std::all_of(interior.begin(), interior.end(), isInside) ||
-      !std::is_sorted(interior.begin(), interior.end()) || excessKnot(interior, p) >= 0 ||
-      (periodic[k] && static_cast<int>(interior.size()) < p))
-    {
-      return text("The knots of ", name(k), " on port 1 are not those of degree ", p,
-        ": between 0 and 1 they must rise, none more than Degree times. Connect output 1 of an "
-        "earlier round.");
-    }
-  }
-  return {};
-}
-
 std::string chooseArray(vtkAlgorithm* filter, int index, vtkDataSet* input, int components,
   const std::string& what, vtkDataArray*& array)
 {
@@ -512,33 +458,6 @@ std::string checkExtent(const Eigen::MatrixXd& points)
     return text("The points have an extent of ", extent, " and coordinates up to ", largest,
       "; extents from ", SmallestExtent, " to ", LargestExtent,
       " can be computed with. Scale the points.");
-  }
-  return {};
-}
-
-std::string checkControlPoints(const Eigen::MatrixXd& points, const std::string& name)
-{
-  for (Eigen::Index j = 0; j < points.rows(); ++j)
-  {
-    if (!points.row(j).allFinite() || points.row(j).cwiseAbs().maxCoeff() > LargestExtent)
-    {
-      return text("Control point ", j, name,
-        " on port 1 is not finite or too far from the data: ", triple(points.row(j).eval().data()),
-        " from their centre. Remove the cause, or begin without port 1.");
-    }
-  }
-  return {};
-}
-
-std::string checkMovable(const Vector& movable)
-{
-  for (Eigen::Index j = 0; j < movable.size(); ++j)
-  {
-    if (!std::isfinite(movable[j]))
-    {
-      return text("Value ", j, " of the control points that may move is ", movable[j],
-        "; 0 keeps a control point, other finite values let it move. Correct it.");
-    }
   }
   return {};
 }

@@ -11,7 +11,6 @@
 #include "vtkType.h"
 
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -88,27 +87,6 @@ private:
 /// -1.
 double excessKnot(const std::vector<double>& interior, int degree);
 
-/// The degree and the knots of an earlier round.
-struct EarlierKnots
-{
-  int Degree = 0;
-  /// Those inside (0, 1), per curve or axis.
-  std::vector<std::vector<double>> Interior;
-
-  /**
-   * Reads and checks the field data of control points.
-   * @param count     of curves or axes
-   * @param periodic  of each
-   * @param name      of one of them, for messages
-   * Returns why they cannot be used, or nothing.
-   */
-  std::string read(vtkFieldData* field, std::size_t count, const std::vector<bool>& periodic,
-    const std::function<std::string(std::size_t)>& name);
-};
-
-/// The number of one component and tuple that field data has under a name, or NaN.
-double fieldNumber(vtkFieldData* field, const char* name, vtkIdType tuple);
-
 /**
  * The point array that the user has chosen with SetInputArrayToProcess, or none: where nothing was
  * chosen, by the names "" and "None", and where a default is not there.
@@ -121,14 +99,11 @@ std::string chooseArray(vtkAlgorithm* filter, int index, vtkDataSet* input, int 
 /// A message where a point array has not one tuple per point.
 std::string checkPointArrays(vtkDataSet* input);
 
+/// Extents outside of it, cubed and divided by, leave the range of double.
+constexpr double LargestExtent = 1e100, SmallestExtent = 1e-100;
+
 /// A message where the points have an extent with whose powers one cannot compute.
 std::string checkExtent(const Eigen::MatrixXd& points);
-
-/// A message where control points are not finite, or as far from the data as checkExtent() refuses.
-std::string checkControlPoints(const Eigen::MatrixXd& points, const std::string& name);
-
-/// A message where a value that tells which control points move is not finite.
-std::string checkMovable(const Vector& movable);
 
 /// A message where the fit and its samples would not fit into the memory of the machine.
 std::string checkMemory(const std::vector<FairingRound>& rounds,

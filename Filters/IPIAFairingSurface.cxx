@@ -3,6 +3,7 @@
 #include "IPIAFairingSurface.h"
 
 #include "Core/Parametrization.h"
+#include "IPIAEarlierRound.h"
 #include "IPIAText.h"
 
 #include "vtkDataArray.h"
@@ -220,14 +221,10 @@ std::string vtkFairingPIASurfaceFilter::Surface::readEarlierRound()
            "surface. Connect output 1 of an earlier round.";
   }
   ipia::EarlierKnots knots;
-  std::string refusal = knots.read(field, 2, { false, false },
-    [](std::size_t axis) { return std::string("axis ") + AxisNames[axis]; });
-  const int p = knots.Degree;
-  if (refusal.empty() && this->Filter->DerivativeOrder > p)
-  {
-    return ipia::text("DerivativeOrder is ", this->Filter->DerivativeOrder,
-      " and the control points on port 1 are of degree ", p, ". Set a lower DerivativeOrder.");
-  }
+  std::string refusal = knots.read(
+    field, 2, { false, false },
+    [](std::size_t axis) { return std::string("axis ") + AxisNames[axis]; },
+    this->Filter->DerivativeOrder);
   if (!refusal.empty())
   {
     return refusal;
@@ -235,40 +232,11 @@ std::string vtkFairingPIASurfaceFilter::Surface::readEarlierRound()
   ipia::FairingRound& round = this->round();
   for (const std::size_t axis : { 0u, 1u })
   {
-    round.Spline.Axes[axis] = ipia::BSplineBasis::clamped(p, knots.Interior[axis]);
+    round.Spline.Axes[axis] = ipia::BSplineBasis::clamped(knots.Degree, knots.Interior[axis]);
   }
-  const std::int64_t n = round.Spline.size();
-  if (this->Controls->GetNumberOfPoints() != n)
-  {
-    return ipia::text("The knots on port 1 ask for ", n, " control points, ",
-      this->Controls->GetNumberOfPoints(), " are there. Connect output 1 of an earlier round.");
-  }
-  vtkDataArray *weights = nullptr, *movable = nullptr;
-  refusal = ipia::chooseArray(
-    this->Filter, 1, this->Controls, 1, "fairing weights of control points", weights);
-  refusal = refusal.empty()
-    ? ipia::chooseArray(this->Filter, 2, this->Controls, 1, "control points that may move", movable)
-    : refusal;
-  if (!refusal.empty())
-  {
-    return refusal;
-  }
-  round.Spline.ControlPoints.resize(n, 3);
-  for (std::int64_t j = 0; j < n; ++j)
-  {
-    double x[3];
-    this->Controls->GetPoint(j, x);
-    for (int c = 0; c < 3; ++c)
-    {
-      round.Spline.ControlPoints(j, c) = x[c] - round.Centre[c];
-    }
-  }
-  round.ControlWeights = weights ? ipia::toVector(weights) : ipia::Vector();
-  round.Movable = movable ? ipia::toVector(movable) : ipia::Vector();
-  refusal = ipia::checkControlPoints(round.Spline.ControlPoints, "");
-  refusal = refusal.empty() ? ipia::checkMovable(round.Movable) : refusal;
-  return refusal.empty() ? ipia::checkWeights(round.ControlWeights, ipia::nameOf(weights))
-                         : refusal;
+  ipia::EarlierControls controls;
+  refusal = controls.read(this->Filter, this->Controls, round.Spline.size());
+  return refusal.empty() ? controls.give(0, "", round) : refusal;
 }
 
 std::string vtkFairingPIASurfaceFilter::Surface::read(const ipia::FairingParameters& parameters)

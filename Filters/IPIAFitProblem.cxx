@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace ipia
 {
@@ -41,6 +43,10 @@ constexpr double BytesPerArraySample = 8, BytesPerArrayCoefficient = 16;
 /// Bricks around a brick with data, and layers of them on both sides of a surface that crosses the
 /// lattice twice along every axis.
 constexpr double BricksAroundOne = 27, LayersOfBricks = 6;
+/// The rows of the hierarchy are of single precision, whose range a fairing beyond this leaves.
+constexpr double LargestFairingWeight = 1e30;
+/// Steps of weights beyond this, in 1 / square of the longest side, are halved in vain.
+constexpr double LargestWeightStep = 1e100;
 }
 
 bool FitParameters::isClassic() const
@@ -118,6 +124,26 @@ void FitProblem::CheckNumbers(const FitParameters& parameters)
       return;
     }
   }
+  if (parameters.FairingWeight >= LargestFairingWeight)
+  {
+    this->Refusal = text("FairingWeight is ", parameters.FairingWeight, "; it must be less than ",
+      LargestFairingWeight, ", beside which data count for nothing. Reduce it.");
+  }
+  else if (parameters.Tolerance >= 1 &&
+    parameters.StoppingRule == vtkIPIAImplicitFitter::RelativeResidual)
+  {
+    this->Refusal = text("Tolerance is ", parameters.Tolerance,
+      "; with StoppingRule RelativeResidual it is a share of the residual at the start, and from 1 "
+      "on nothing is iterated. Set one below 1, or 0.");
+  }
+}
+
+double FitProblem::totalWeight() const
+{
+  const auto& weights = this->Cloud.Weights;
+  return static_cast<double>(this->Cloud.ExtraValues.size()) +
+    (weights.empty() ? static_cast<double>(this->Cloud.Positions.size())
+                     : std::accumulate(weights.begin(), weights.end(), 0.0));
 }
 
 void FitProblem::CheckBasisAndOscillation(const FitParameters& parameters)
@@ -157,6 +183,21 @@ void FitProblem::CheckBasisAndOscillation(const FitParameters& parameters)
   {
     this->Refusal = "OscillationStep AsPrinted is a step of ProgressiveIteration. Set Solver to "
                     "ProgressiveIteration, or OscillationStep to Energy.";
+  }
+  else if (parameters.OscillationWeight * std::numeric_limits<double>::epsilon() >
+    this->totalWeight())
+  {
+    this->Refusal = text("OscillationWeight is ", parameters.OscillationWeight,
+      " and the points weigh ", this->totalWeight(),
+      " together, which counts for nothing beside it. Reduce OscillationWeight.");
+  }
+  else if (const double side = this->Cloud.longestSide();
+           rational && parameters.WeightStepSize * side * side > LargestWeightStep)
+  {
+    this->Refusal =
+      text("WeightStepSize is ", parameters.WeightStepSize, " for points of an extent of ", side,
+        ", far too long a step to be halved until it is one. "
+        "Reduce WeightStepSize.");
   }
 }
 

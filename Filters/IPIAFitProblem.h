@@ -79,6 +79,8 @@ public:
 private:
   void CheckCombination(const FitParameters& parameters);
   void CheckNumbers(const FitParameters& parameters);
+  /// Of all points and extra rows.
+  double totalWeight() const;
   void CheckBasisAndOscillation(const FitParameters& parameters);
   void CheckPrintedStep(const FitParameters& parameters);
   void ChooseDimension(const FitParameters& parameters);

@@ -88,7 +88,8 @@ struct PointCloud::Found
   }
 };
 
-void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows)
+void PointCloud::gather(const ArrayChooser& choose, const ArrayNamer& nameOf, vtkDataObject* input,
+  vtkPolyData* extraRows)
 {
   // All blocks as one data set. Each must have what is asked of it: appending drops arrays that
   // only some blocks have.
@@ -174,6 +175,18 @@ void PointCloud::gather(const ArrayChooser& choose, vtkDataObject* input, vtkPol
           " and others not. Give all of them the array.");
         return;
       }
+    }
+  }
+  for (std::size_t k = 0; k < std::size(PointScalars); ++k)
+  {
+    const auto& scalar = PointScalars[k];
+    const std::string name = nameOf(scalar.Index);
+    if (!name.empty() && !this->ChosenArrays[1 + k])
+    {
+      this->Refusal = text("The input has no array named \"", name, "\" for the ", scalar.Name,
+        ". Choose a point array of 1 component with SetInputArrayToProcess(", scalar.Index,
+        ", ...), or none by \"None\".");
+      return;
     }
   }
   this->Blocks.assign(blocks.begin(), blocks.end());

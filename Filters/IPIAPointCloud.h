@@ -45,11 +45,16 @@ public:
   /// The array of a data set that was chosen for an index, or nullptr.
   using ArrayChooser = std::function<vtkDataArray*(int index, vtkDataObject* data)>;
 
+  /// The name that was given for an index, or nothing.
+  using ArrayNamer = std::function<std::string(int index)>;
+
   /**
    * Takes all finite points of @a input (vtkPolyData or a composite of them) and of @a extraRows
-   * (vtkPolyData or nullptr), with the arrays that @a choose names.
+   * (vtkPolyData or nullptr), with the arrays that @a choose finds; an optional one that is not
+   * there although it has a name is refused.
    */
-  void gather(const ArrayChooser& choose, vtkDataObject* input, vtkPolyData* extraRows);
+  void gather(const ArrayChooser& choose, const ArrayNamer& nameOf, vtkDataObject* input,
+    vtkPolyData* extraRows);
 
   /// Whether the lengths of normals count as weights, on gather().
   bool UseNormalLengths = false;

@@ -283,9 +283,15 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
   }
   this->State->Current = std::make_unique<ipia::FitProblem>();
   this->State->Current->Cloud.UseNormalLengths = this->UseNormalLengths;
+  const auto nameOf = [this](int index)
+  {
+    const char* name = this->GetInputArrayInformation(index)->Get(vtkDataObject::FIELD_NAME());
+    // As ParaView names what is none.
+    return name && std::string("None") != name ? std::string(name) : std::string();
+  };
   this->State->Current->Cloud.gather([this](int index, vtkDataObject* data)
     { return this->GetInputArrayToProcess(index, data); },
-    points, extraRows);
+    nameOf, points, extraRows);
   if (this->FitPointArrays)
   {
     this->State->Current->Arrays =

@@ -95,7 +95,8 @@
  * point or, with FIELD_ASSOCIATION_NONE, one for all points of a block in its field data; 3,
  * optional local fairing weights > 0 (1 component, of the hierarchy): around points where it is 10
  * the fairing energy counts tenfold against the data, so that f is smoother there, where it is 0.1
- * a tenth; 1 is as without. Any numeric type. Normals need not have unit length.
+ * a tenth; 1 is as without. Any numeric type. Normals need not have unit length. An array that is
+ * named and not there is refused.
  *
  * Port 1, optional: vtkPolyData with more rows, points at which f shall take a given value, of
  * weight
@@ -377,7 +378,7 @@ public:
    * Weight tau of the fairing energy of levels finer than 32 cells, tau sum |D^r c|^2 over
    * differences of neighbouring coefficients, where the rows of an occupied cell weigh about 1 in
    * all: the energy tau h^(2 r - dimension) integral |D^r f|^2. 0: none; -1 (the default):
-   * automatic, 5e-5, and more on noisy data, by cross-validation.
+   * automatic, 5e-5, and more on noisy data, by cross-validation. Less than 1e30.
    */
   vtkSetClampMacro(FairingWeight, double, -1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(FairingWeight, double);
@@ -432,7 +433,8 @@ public:
   ///@{
   /**
    * The iteration ends when the measure of StoppingRule falls below this. 0 (the default): all
-   * given iterations are done; where their number is automatic, the hierarchy stops at 1e-3.
+   * given iterations are done; where their number is automatic, the hierarchy stops at 1e-3. Below
+   * 1 for RelativeResidual.
    */
   vtkSetClampMacro(Tolerance, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Tolerance, double);

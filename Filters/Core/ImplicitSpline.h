@@ -8,15 +8,10 @@
 
 #include "FarField.h"
 #include "Lattice.h"
-
-#include <vector>
+#include "SplineSampling.h"
 
 namespace ipia
 {
-/// Sample positions per axis, relative to the lower corner of the domain, ascending.
-template <int Dim>
-using AxisPositions = std::array<std::vector<double>, Dim>;
-
 /**
  * f(x) = sum_i c_i B_i(x) on the domain, or with weights the uniform rational spline
  * f(x) = sum_i c_i w_i B_i(x) / sum_i w_i B_i(x); the constant of the far field in its cells, and

@@ -27,19 +27,42 @@ def measured(proxy):
     return {"points": proxy.GetDataInformation().GetNumberOfPoints(), "area": area}
 
 
-PIECES = """<VTKFile type="PPolyData" version="0.1" byte_order="LittleEndian">
-  <PPolyData GhostLevel="0">
-    <PPointData Normals="Normals">
-      <PDataArray type="Float64" Name="Normals" NumberOfComponents="3"/>
+def of_pieces(kind, attributes, array, pieces, extent=""):
+    """The file that names the pieces of a data set, with the array of their points."""
+    pieces = "\n".join(f"    <Piece {piece}/>" for piece in pieces)
+    return f"""<VTKFile type="P{kind}" version="0.1" byte_order="LittleEndian">
+  <P{kind} {extent}GhostLevel="0">
+    <PPointData{attributes}>
+      <PDataArray type="Float64" {array}/>
     </PPointData>
     <PPoints>
       <PDataArray type="Float64" Name="Points" NumberOfComponents="3"/>
     </PPoints>
-    <Piece Source="parallel_0.vtp"/>
-    <Piece Source="parallel_1.vtp"/>
-  </PPolyData>
+{pieces}
+  </P{kind}>
 </VTKFile>
 """
+
+
+PIECES = of_pieces(
+    "PolyData",
+    ' Normals="Normals"',
+    'Name="Normals" NumberOfComponents="3"',
+    ('Source="parallel_0.vtp"', 'Source="parallel_1.vtp"'),
+)
+LINES = of_pieces(
+    "PolyData",
+    ' TCoords="uv"',
+    'Name="uv" NumberOfComponents="2"',
+    ('Source="lines_0.vtp"', 'Source="lines_1.vtp"'),
+)
+GRID = of_pieces(
+    "StructuredGrid",
+    "",
+    'Name="w" NumberOfComponents="1"',
+    ('Extent="0 13 0 24 0 0" Source="grid_0.vts"', 'Extent="13 29 0 24 0 0" Source="grid_1.vts"'),
+    'WholeExtent="0 29 0 24 0 0" ',
+)
 
 
 def write_pieces(path):
@@ -49,34 +72,6 @@ def write_pieces(path):
         t.write(f"parallel_{piece}.vtp", t.polydata(points[half], normals[half]))
     with open(path, "w", encoding="ascii") as file:
         file.write(PIECES)
-
-
-LINES = """<VTKFile type="PPolyData" version="0.1" byte_order="LittleEndian">
-  <PPolyData GhostLevel="0">
-    <PPointData TCoords="uv">
-      <PDataArray type="Float64" Name="uv" NumberOfComponents="2"/>
-    </PPointData>
-    <PPoints>
-      <PDataArray type="Float64" Name="Points" NumberOfComponents="3"/>
-    </PPoints>
-    <Piece Source="lines_0.vtp"/>
-    <Piece Source="lines_1.vtp"/>
-  </PPolyData>
-</VTKFile>
-"""
-GRID = """<VTKFile type="PStructuredGrid" version="0.1" byte_order="LittleEndian">
-  <PStructuredGrid WholeExtent="0 29 0 24 0 0" GhostLevel="0">
-    <PPointData>
-      <PDataArray type="Float64" Name="w" NumberOfComponents="1"/>
-    </PPointData>
-    <PPoints>
-      <PDataArray type="Float64" Name="Points" NumberOfComponents="3"/>
-    </PPoints>
-    <Piece Extent="0 13 0 24 0 0" Source="grid_0.vts"/>
-    <Piece Extent="13 29 0 24 0 0" Source="grid_1.vts"/>
-  </PStructuredGrid>
-</VTKFile>
-"""
 
 
 def wave(u, v):

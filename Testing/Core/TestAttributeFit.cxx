@@ -6,17 +6,9 @@
 namespace
 {
 using namespace ipia;
+using ipia::test::unitLattice;
 
 constexpr double Radius = 0.35;
-
-template <int Dim>
-Lattice<Dim> unitLattice(std::int64_t cells)
-{
-  Lattice<Dim> lattice;
-  lattice.Size.fill(cells + 3);
-  lattice.Spacing.setConstant(1.0 / static_cast<double>(cells));
-  return lattice;
-}
 
 /// Points on a circle or sphere, about one to a cell of the lattice of 64 cells.
 template <int Dim>

@@ -145,6 +145,22 @@ Eigen::MatrixXd energyMinimiser(const DenseFairing& dense, const FairingProblem&
   return rows.colPivHouseholderQr().solve(targets);
 }
 
+/// To rounding, all but.
+void expectAllSolversReach(const Eigen::MatrixXd& controlPoints, const Named& named)
+{
+  for (const FairingSolver solver : solversFor(named.Problem))
+  {
+    FairingOptions options;
+    options.Solver = solver;
+    options.Tolerance = 1e-12;
+    options.MaximumNumberOfIterations = 1000000;
+    TensorSpline spline;
+    EXPECT_EQ(named.Problem.solve(options, spline).Status, FairingStatus::Converged) << named.Name;
+    EXPECT_LE(difference(spline.ControlPoints, controlPoints), 1e-8)
+      << named.Name << ", solver " << static_cast<int>(solver);
+  }
+}
+
 TEST(FairingIteration, EqualWeightsGiveTheMinimiserOfTheEnergy)
 {
   for (Named& named : problems())
@@ -153,18 +169,7 @@ TEST(FairingIteration, EqualWeightsGiveTheMinimiserOfTheEnergy)
     problem.Weights.setConstant(balancedWeight(problem));
     const DenseFairing dense(problem);
     const Eigen::MatrixXd expected = energyMinimiser(dense, problem);
-    for (const FairingSolver solver : solversFor(problem))
-    {
-      FairingOptions options;
-      options.Solver = solver;
-      options.Tolerance = 1e-12;
-      options.MaximumNumberOfIterations = 1000000;
-      TensorSpline spline;
-      const FairingResult result = problem.solve(options, spline);
-      EXPECT_EQ(result.Status, FairingStatus::Converged) << named.Name;
-      EXPECT_LE(difference(spline.ControlPoints, expected), 1e-8)
-        << named.Name << ", solver " << static_cast<int>(solver);
-    }
+    expectAllSolversReach(expected, named);
   }
 }
 
@@ -177,17 +182,7 @@ TEST(FairingIteration, UnequalWeightsSolveTheirEquations)
     problem.Weights = randomWeights(problem.Start.size(), weight / 30, weight, 37);
     const DenseFairing dense(problem);
     const Eigen::MatrixXd expected = dense.A.fullPivLu().solve(dense.B);
-    for (const FairingSolver solver : solversFor(problem))
-    {
-      FairingOptions options;
-      options.Solver = solver;
-      options.Tolerance = 1e-12;
-      options.MaximumNumberOfIterations = 1000000;
-      TensorSpline spline;
-      EXPECT_EQ(problem.solve(options, spline).Status, FairingStatus::Converged) << named.Name;
-      EXPECT_LE(difference(spline.ControlPoints, expected), 1e-8)
-        << named.Name << ", solver " << static_cast<int>(solver);
-    }
+    expectAllSolversReach(expected, named);
   }
 }
 

@@ -16,10 +16,7 @@ const double Threshold = FarFieldOptions().Threshold;
 template <int Dim>
 Lattice<Dim> cube(std::int64_t cells)
 {
-  Lattice<Dim> lattice;
-  lattice.Size.fill(cells + 3);
-  lattice.Spacing.setConstant(4.0 / static_cast<double>(cells));
-  return lattice;
+  return test::cubeLattice<Dim>(4, cells);
 }
 
 /// Two-sided offsets of one knot spacing, conjugate gradients.

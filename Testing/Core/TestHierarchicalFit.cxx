@@ -8,25 +8,8 @@
 namespace
 {
 using namespace ipia;
-
-template <int Dim>
-Lattice<Dim> unitLattice(std::int64_t cells)
-{
-  Lattice<Dim> lattice;
-  lattice.Size.fill(cells + 3);
-  lattice.Spacing.setConstant(1.0 / static_cast<double>(cells));
-  return lattice;
-}
-
-template <int Dim>
-HermiteInput<Dim> sphereInput(double radius, std::int64_t n)
-{
-  const auto points = test::spherePoints<Dim>(Point<Dim>::Constant(0.5), radius, n);
-  HermiteInput<Dim> input;
-  input.Positions = points.Positions;
-  input.Normals = points.Normals;
-  return input;
-}
+using ipia::test::sphereInput;
+using ipia::test::unitLattice;
 
 template <int Dim>
 ImplicitSpline<Dim> functionOf(const Lattice<Dim>& lattice, const HierarchicalResult<Dim>& result)

@@ -8,17 +8,10 @@
 namespace
 {
 using namespace ipia;
+using ipia::test::sphereInput;
+using ipia::test::unitLattice;
 
 constexpr int NumberOfViews = 10;
-
-template <int Dim>
-Lattice<Dim> unitLattice(std::int64_t cells)
-{
-  Lattice<Dim> lattice;
-  lattice.Size.fill(cells + 3);
-  lattice.Spacing.setConstant(1.0 / static_cast<double>(cells));
-  return lattice;
-}
 
 template <int Dim>
 Point<Dim> centre()
@@ -56,21 +49,11 @@ HermiteInput<Dim> joined(const HermiteInput<Dim>& first, const HermiteInput<Dim>
   return both;
 }
 
-template <int Dim>
-HermiteInput<Dim> spherePoints(double radius, std::int64_t n)
-{
-  const auto points = test::spherePoints<Dim>(centre<Dim>(), radius, n);
-  HermiteInput<Dim> input;
-  input.Positions = points.Positions;
-  input.Normals = points.Normals;
-  return input;
-}
-
 /// A sphere with waves that its lattice follows within a small error only.
 template <int Dim>
 HermiteInput<Dim> wavyPoints(std::int64_t n)
 {
-  HermiteInput<Dim> input = spherePoints<Dim>(1, n);
+  HermiteInput<Dim> input = sphereInput<Dim>(1, n);
   constexpr double waves = 14, height = 0.012;
   for (Eigen::Index k = 0; k < n; ++k)
   {
@@ -407,7 +390,7 @@ TYPED_TEST(IncrementalFitOf, SolvesForNothingWhereTheFitWasRight)
   constexpr int Dim = TypeParam::value;
   const Lattice<Dim> lattice = unitLattice<Dim>(64);
   const HierarchicalOptions options;
-  const auto once = spherePoints<Dim>(0.35, 5000);
+  const auto once = sphereInput<Dim>(0.35, 5000);
   IncrementalFit<Dim> incremental;
   const auto first = incremental.fit(lattice, once, options);
   const auto again = incremental.fit(lattice, joined(once, once), options);
@@ -447,7 +430,7 @@ TYPED_TEST(IncrementalFitOf, FitsAllAgainWhatIsNotAnAddition)
   using Input = HermiteInput<Dim>;
   const Lattice<Dim> lattice = unitLattice<Dim>(40);
   const HierarchicalOptions options;
-  Input base = spherePoints<Dim>(0.33, 3000);
+  Input base = sphereInput<Dim>(0.33, 3000);
   base.Weights = Vector::LinSpaced(3000, 0.5, 1);
   base.LocalFairing = Vector::LinSpaced(3000, 0.5, 2);
   base.ExtraPositions = centre<Dim>();

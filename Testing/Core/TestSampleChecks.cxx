@@ -11,27 +11,14 @@
 namespace
 {
 using namespace ipia;
-
-template <int Dim>
-Lattice<Dim> unitLattice(std::int64_t cells)
-{
-  Lattice<Dim> lattice;
-  lattice.Size.fill(cells + 3);
-  lattice.Spacing.setConstant(1.0 / static_cast<double>(cells));
-  return lattice;
-}
+using ipia::test::unitLattice;
 
 constexpr double Radius = 0.35;
 
 template <int Dim>
 HermiteInput<Dim> sphereInput()
 {
-  const auto points =
-    test::spherePoints<Dim>(Point<Dim>::Constant(0.5), Radius, Dim == 2 ? 1000 : 12000);
-  HermiteInput<Dim> input;
-  input.Positions = points.Positions;
-  input.Normals = points.Normals;
-  return input;
+  return test::sphereInput<Dim>(Radius, Dim == 2 ? 1000 : 12000);
 }
 
 /// Turns this share of the normals, and returns how many it was.

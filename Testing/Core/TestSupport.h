@@ -8,6 +8,7 @@
 #define ipia_TestSupport_h
 
 #include "Lattice.h"
+#include "PointSamples.h"
 
 #include <Eigen/Dense>
 
@@ -32,6 +33,22 @@ Lattice<Dim> makeLattice(const Index<Dim>& size, const Point<Dim>& spacing)
   lattice.Size = size;
   lattice.Spacing = spacing;
   return lattice;
+}
+
+/// On a square or cube from the origin, with the same number of cells on all axes.
+template <int Dim>
+Lattice<Dim> cubeLattice(double side, std::int64_t cells)
+{
+  Lattice<Dim> lattice;
+  lattice.Size.fill(cells + 3);
+  lattice.Spacing.setConstant(side / static_cast<double>(cells));
+  return lattice;
+}
+
+template <int Dim>
+Lattice<Dim> unitLattice(std::int64_t cells)
+{
+  return cubeLattice<Dim>(1, cells);
 }
 
 /// An odd-sized lattice with another spacing on each axis: 9 x 8 (x 7).
@@ -175,6 +192,17 @@ OrientedPoints<Dim> spherePoints(const Point<Dim>& centre, double radius, std::i
     points.Positions.col(k) = centre + radius * points.Normals.col(k);
   }
   return points;
+}
+
+/// What a fit takes, with a circle or sphere about the middle of the unit square or cube.
+template <int Dim>
+HermiteInput<Dim> sphereInput(double radius, std::int64_t n)
+{
+  const auto points = spherePoints<Dim>(Point<Dim>::Constant(0.5), radius, n);
+  HermiteInput<Dim> input;
+  input.Positions = points.Positions;
+  input.Normals = points.Normals;
+  return input;
 }
 
 inline double relativeDifference(const Vector& value, const Vector& reference)

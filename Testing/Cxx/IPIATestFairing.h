@@ -157,6 +157,22 @@ inline vtkPolyData* Output(vtkAlgorithm* filter, int port)
   return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port));
 }
 
+inline vtkDataArray* PointArray(vtkAlgorithm* filter, int port, const char* name)
+{
+  return Output(filter, port)->GetPointData()->GetArray(name);
+}
+
+/// One of the filters, set to iterate as long as it takes to be exact.
+template <typename Class>
+vtkSmartPointer<Class> NewExactFilter(vtkDataObject* data)
+{
+  auto filter = vtkSmartPointer<Class>::New();
+  filter->SetInputDataObject(data);
+  filter->SetTolerance(1e-9);
+  filter->SetMaximumNumberOfIterations(100000);
+  return filter;
+}
+
 inline bool AllOutputsAreEmpty(vtkAlgorithm* filter)
 {
   return IsEmpty(Output(filter, 0)) && IsEmpty(Output(filter, 1)) && IsEmpty(Output(filter, 2));

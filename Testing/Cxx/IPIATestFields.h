@@ -106,18 +106,7 @@ public:
     renderer->GetActiveCamera()->Zoom(1.35);
   }
 
-  int Compare(int argc, char* argv[])
-  {
-    this->Window->Render();
-    const int result = vtkRegressionTestImage(this->Window);
-    if (result == vtkRegressionTester::DO_INTERACTOR)
-    {
-      vtkNew<vtkRenderWindowInteractor> interactor;
-      interactor->SetRenderWindow(this->Window);
-      interactor->Start();
-    }
-    return result == vtkRegressionTester::FAILED ? EXIT_FAILURE : EXIT_SUCCESS;
-  }
+  int Compare(int argc, char* argv[]) { return CompareWindow(this->Window, argc, argv); }
 
 private:
   const int Columns, Rows;

@@ -22,6 +22,20 @@
 
 namespace ipiatest
 {
+/// Draws the window and compares it with the reference image. Returns what main returns.
+inline int CompareWindow(vtkRenderWindow* window, int argc, char* argv[])
+{
+  window->Render();
+  const int result = vtkRegressionTestImage(window);
+  if (result == vtkRegressionTester::DO_INTERACTOR)
+  {
+    vtkNew<vtkRenderWindowInteractor> interactor;
+    interactor->SetRenderWindow(window);
+    interactor->Start();
+  }
+  return result == vtkRegressionTester::FAILED ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
 /// A window of 300 x 300 pixels on a white ground.
 class Picture
 {
@@ -56,19 +70,7 @@ public:
     this->Renderer->ResetCamera();
   }
 
-  /// What main returns.
-  int Compare(int argc, char* argv[])
-  {
-    this->Window->Render();
-    const int result = vtkRegressionTestImage(this->Window);
-    if (result == vtkRegressionTester::DO_INTERACTOR)
-    {
-      vtkNew<vtkRenderWindowInteractor> interactor;
-      interactor->SetRenderWindow(this->Window);
-      interactor->Start();
-    }
-    return result == vtkRegressionTester::FAILED ? EXIT_FAILURE : EXIT_SUCCESS;
-  }
+  int Compare(int argc, char* argv[]) { return CompareWindow(this->Window, argc, argv); }
 
   vtkNew<vtkRenderer> Renderer;
 

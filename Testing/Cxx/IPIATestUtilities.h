@@ -12,6 +12,7 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
+#include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -319,6 +320,18 @@ inline bool OutputsAreSound(vtkIPIAImplicitFitter* fitter)
     IsFinite(points->GetPointData()->GetArray("Residual")) &&
     IsFinite(points->GetPointData()->GetArray("Distance")) && IsFinite(lattice->GetPointData()) &&
     IsFinite(lattice->GetFieldData());
+}
+
+/// An array of one number.
+inline vtkSmartPointer<vtkDoubleArray> Constant(
+  const char* name, vtkIdType tuples, double value, int components = 1)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  array->Fill(value);
+  return array;
 }
 
 /// Same type, size and bits.

@@ -10,6 +10,7 @@ namespace
 {
 using ipiatest::Checks;
 using ipiatest::Output;
+using ipiatest::PointArray;
 using ipiatest::Text;
 using ipiatest::Vector3;
 
@@ -17,16 +18,7 @@ using Filter = vtkSmartPointer<vtkFairingPIACurveFilter>;
 
 Filter NewFilter(vtkPolyData* lines)
 {
-  auto filter = Filter::New();
-  filter->SetInputData(lines);
-  filter->SetTolerance(1e-9);
-  filter->SetMaximumNumberOfIterations(100000);
-  return filter;
-}
-
-vtkDataArray* PointArray(vtkAlgorithm* filter, int port, const char* name)
-{
-  return Output(filter, port)->GetPointData()->GetArray(name);
+  return ipiatest::NewExactFilter<vtkFairingPIACurveFilter>(lines);
 }
 
 void TestNothingSet(Checks& checks)

@@ -11,6 +11,7 @@ namespace
 {
 using ipiatest::Checks;
 using ipiatest::Output;
+using ipiatest::PointArray;
 using ipiatest::Text;
 using ipiatest::Vector3;
 
@@ -18,17 +19,9 @@ using Filter = vtkSmartPointer<vtkFairingPIASurfaceFilter>;
 
 Filter NewFilter(vtkDataObject* data)
 {
-  auto filter = Filter::New();
-  filter->SetInputDataObject(data);
-  filter->SetTolerance(1e-9);
-  filter->SetMaximumNumberOfIterations(100000);
+  auto filter = ipiatest::NewExactFilter<vtkFairingPIASurfaceFilter>(data);
   filter->SetSolverToBiconjugateGradient();
   return filter;
-}
-
-vtkDataArray* PointArray(vtkAlgorithm* filter, int port, const char* name)
-{
-  return Output(filter, port)->GetPointData()->GetArray(name);
 }
 
 void TestNothingSet(Checks& checks)

@@ -189,11 +189,8 @@ void TestFullFits(Checks& checks)
     { "weights",
       [](vtkIPIAImplicitFitter* fitter, vtkPolyData* points)
       {
-        vtkNew<vtkDoubleArray> weights;
-        weights->SetName("Weights");
-        weights->SetNumberOfTuples(points->GetNumberOfPoints());
-        weights->Fill(0.5);
-        points->GetPointData()->AddArray(weights);
+        points->GetPointData()->AddArray(
+          ipiatest::Constant("Weights", points->GetNumberOfPoints(), 0.5));
         fitter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Weights");
       } },
     { "another grid size",

@@ -196,9 +196,7 @@ void TestWeights(Checks& checks)
   ipiatest::OrientedPoints both = ipiatest::SpherePoints(600, 1);
   both.Append(ipiatest::SpherePoints(600, 1.1));
   auto cloud = ipiatest::ToPolyData(both);
-  vtkNew<vtkDoubleArray> weights;
-  weights->SetName("Importance");
-  weights->SetNumberOfTuples(1200);
+  auto weights = ipiatest::Constant("Importance", 1200, 1);
   cloud->GetPointData()->AddArray(weights);
   double value[3];
   int k = 0;
@@ -225,11 +223,7 @@ void TestWeights(Checks& checks)
 void TestScaledWeights(Checks& checks)
 {
   auto cloud = SphereCloud();
-  vtkNew<vtkDoubleArray> weights;
-  weights->SetName("Importance");
-  weights->SetNumberOfTuples(600);
-  weights->Fill(8);
-  cloud->GetPointData()->AddArray(weights);
+  cloud->GetPointData()->AddArray(ipiatest::Constant("Importance", 600, 8));
   auto weighted = NewClassicFitter(cloud, 12);
   weighted->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Importance");
   weighted->Update();
@@ -246,14 +240,11 @@ void TestScaledWeights(Checks& checks)
 void TestExtraRows(Checks& checks)
 {
   auto rows = SphereCloud(50, 0.3);
-  vtkNew<vtkDoubleArray> values;
-  values->SetName("Target");
-  values->SetNumberOfTuples(50);
-  values->Fill(-0.7);
+  auto values = ipiatest::Constant("Target", 50, -0.7);
   double centre[3] = { 0, 0, 0.3 };
   for (bool byName : { false, true })
   {
-    rows->GetPointData()->SetScalars(byName ? nullptr : values.Get());
+    rows->GetPointData()->SetScalars(byName ? nullptr : values.GetPointer());
     rows->GetPointData()->AddArray(values);
     auto fitter = NewClassicFitter(SphereCloud(), 12);
     fitter->SetSolverToConjugateGradient();
@@ -277,24 +268,6 @@ void TestExtraRows(Checks& checks)
   fitter->Update();
   checks.AtMost(std::abs(fitter->GetImplicitFunction()->EvaluateFunction(centre) + 0.4), 0.05,
     "changed extra rows");
-}
-
-/// The rows' own values: outward and inward distances and values may differ.
-void TestOffsets(Checks& checks)
-{
-  auto fitter = NewClassicFitter(SphereCloud(2000), 24);
-  fitter->SetSolverToConjugateGradient();
-  fitter->SetMaximumNumberOfIterations(50);
-  fitter->SetOffsetDistance(0.1);
-  fitter->SetOffsetValue(0.3);
-  fitter->SetInwardOffsetDistance(0.12);
-  fitter->SetInwardOffsetValue(0.2);
-  fitter->Update();
-  double out[3] = { 0, 0, 1.1 }, in[3] = { 0, 0, 0.88 };
-  vtkIPIAImplicitFunction* f = fitter->GetImplicitFunction();
-  checks.AtMost(std::abs(f->EvaluateFunction(out) - 0.3), 0.03, "f at the outward rows");
-  checks.AtMost(std::abs(f->EvaluateFunction(in) + 0.2), 0.03, "f at the inward rows");
-  checks.Equal(fitter->GetOffsetDistanceUsed(), 0.1, "OffsetDistanceUsed");
 }
 
 /// Dimension 3 for planar points gives a volume, 0 and 2 a slice.
@@ -346,7 +319,6 @@ int TestImplicitFitterParameters(int, char*[])
   TestWeights(checks);
   TestScaledWeights(checks);
   TestExtraRows(checks);
-  TestOffsets(checks);
   TestDimension(checks);
   TestPlaneInSpace(checks);
   return checks.Result();

@@ -142,11 +142,8 @@ void TestRefusedCombinations(Checks& checks)
       [](auto* fitter)
       {
         auto* cloud = vtkPolyData::SafeDownCast(fitter->GetInput());
-        vtkNew<vtkDoubleArray> local;
-        local->SetName("LocalFairing");
-        local->SetNumberOfTuples(cloud->GetNumberOfPoints());
-        local->Fill(1);
-        cloud->GetPointData()->AddArray(local);
+        cloud->GetPointData()->AddArray(
+          ipiatest::Constant("LocalFairing", cloud->GetNumberOfPoints(), 1));
         fitter->SetInputArrayToProcess(
           3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "LocalFairing");
       }));
@@ -163,6 +160,17 @@ void TestRefusedValues(Checks& checks)
       fitter->SetBasisTypeToUniformRational();
       fitter->SetWeightStepSize(nan);
     });
+  for (const double value : { 1e100, 1e300, std::numeric_limits<double>::infinity() })
+  {
+    CheckRefused(checks, "lambda out of reach", "counts for nothing beside it",
+      [=](auto* fitter) { fitter->SetOscillationWeight(value); });
+    CheckRefused(checks, "tau out of reach", "far too long a step",
+      [=](auto* fitter)
+      {
+        fitter->SetBasisTypeToUniformRational();
+        fitter->SetWeightStepSize(value);
+      });
+  }
   for (const bool planar : { true, false })
   {
     const double limit = planar ? 1. / 16 : 1. / 24;

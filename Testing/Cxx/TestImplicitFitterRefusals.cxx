@@ -20,6 +20,7 @@
 namespace
 {
 using ipiatest::Checks;
+using ipiatest::Constant;
 using ipiatest::Method;
 using ipiatest::OrientedPoints;
 using ipiatest::SphereCloud;
@@ -170,12 +171,7 @@ void TestNoNormals(Checks& checks)
 void TestWrongComponentCount(Checks& checks)
 {
   auto cloud = SphereCloud();
-  vtkNew<vtkDoubleArray> pairs;
-  pairs->SetName("Pairs");
-  pairs->SetNumberOfComponents(2);
-  pairs->SetNumberOfTuples(cloud->GetNumberOfPoints());
-  pairs->Fill(1);
-  cloud->GetPointData()->AddArray(pairs);
+  cloud->GetPointData()->AddArray(Constant("Pairs", cloud->GetNumberOfPoints(), 1, 2));
   CheckRefused(checks, "normals of two components", cloud, "has 2 components",
     [](vtkAlgorithm* algorithm, auto*) {
       algorithm->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Pairs");
@@ -199,29 +195,16 @@ void TestZeroNormals(Checks& checks)
 void TestWeights(Checks& checks)
 {
   auto cloud = SphereCloud();
-  vtkNew<vtkDoubleArray> weights;
-  weights->SetName("Weight");
-  weights->SetNumberOfComponents(2);
-  weights->SetNumberOfTuples(cloud->GetNumberOfPoints());
-  weights->Fill(1);
-  cloud->GetPointData()->AddArray(weights);
+  cloud->GetPointData()->AddArray(Constant("Weight", cloud->GetNumberOfPoints(), 1, 2));
   CheckRefused(
     checks, "weights of two components", cloud, "row weights has 2 components", ChooseWeights);
 
   auto few = SphereCloud();
-  vtkNew<vtkDoubleArray> tooFew;
-  tooFew->SetName("Weight");
-  tooFew->SetNumberOfTuples(10);
-  tooFew->Fill(1);
-  few->GetPointData()->AddArray(tooFew);
+  few->GetPointData()->AddArray(Constant("Weight", 10, 1));
   CheckRefused(checks, "fewer weights than points", few, "10 tuples for 600 points", ChooseWeights);
 
   auto none = SphereCloud();
-  vtkNew<vtkDoubleArray> zero;
-  zero->SetName("Weight");
-  zero->SetNumberOfTuples(none->GetNumberOfPoints());
-  zero->Fill(0);
-  none->GetPointData()->AddArray(zero);
+  none->GetPointData()->AddArray(Constant("Weight", none->GetNumberOfPoints(), 0));
   CheckRefused(checks, "zero weights", none, "All 600 row weights are zero", ChooseWeights);
 }
 
@@ -399,6 +382,65 @@ void TestNumbersThatAreNone(Checks& checks)
   }
 }
 
+/// Beyond what a fit can make sense of. Setters take infinity for the largest number.
+void TestNumbersOutOfReach(Checks& checks)
+{
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double value : { 1e30, 1e100, 1e300, infinity })
+  {
+    CheckRefused(checks, "FairingWeight", SphereCloud(), "FairingWeight is 1e+",
+      [=](auto*, auto* fitter) { fitter->SetFairingWeight(value); });
+    CheckRefused(checks, "Padding", SphereCloud(), "Padding is 1e+",
+      [=](auto*, auto* fitter) { fitter->SetPadding(value); });
+  }
+  for (const double value : { 1., 1e100, 1e300, infinity })
+  {
+    CheckRefused(checks, "Tolerance", SphereCloud(), "nothing is iterated",
+      [=](auto*, auto* fitter) { fitter->SetTolerance(value); });
+  }
+  // The other rule has a unit, in which any number may be right.
+  auto fitter = NewFitter(Method::Default, SphereCloud(), 12);
+  vtkNew<ipiatest::MessageObserver> messages;
+  messages->Watch(fitter);
+  fitter->SetStoppingRuleToEnergyChange();
+  fitter->SetTolerance(1e100);
+  fitter->Update();
+  messages->CheckSilence(checks, "Tolerance of EnergyChange");
+  checks.That(ipiatest::OutputsAreSound(fitter), "Tolerance of EnergyChange: outputs are finite");
+}
+
+/// Weights that are named and not there; "" and "None" name nothing.
+void TestAbsentArrays(Checks& checks)
+{
+  for (const int index : { 1, 3 })
+  {
+    const auto choose = [index](const char* name)
+    {
+      return [=](vtkAlgorithm* algorithm, auto*) {
+        algorithm->SetInputArrayToProcess(
+          index, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+      };
+    };
+    const std::string what = index == 1 ? "row weights" : "local fairing weights";
+    const std::string phrase = "The input has no array named \"Absent\" for the " + what;
+    CheckRefused(checks, "absent " + what, SphereCloud(), phrase, choose("Absent"));
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetBlock(0, SphereCloud());
+    blocks->SetBlock(1, SphereCloud(50, 2));
+    CheckRefused(checks, "absent " + what + " of blocks", blocks, phrase, choose("Absent"));
+    for (const char* none : { "", "None" })
+    {
+      auto fitter = NewFitter(Method::Default, SphereCloud(), 12);
+      vtkNew<ipiatest::MessageObserver> messages;
+      messages->Watch(fitter);
+      choose(none)(fitter, fitter.GetPointer());
+      fitter->Update();
+      messages->CheckSilence(checks, "no " + what);
+      checks.That(ipiatest::OutputsAreSound(fitter), "no " + what + ": outputs are finite");
+    }
+  }
+}
+
 void TestBlockWithoutNormals(Checks& checks)
 {
   vtkNew<vtkPolyData> bare;
@@ -413,11 +455,7 @@ void TestBlockWithoutNormals(Checks& checks)
 void TestBlockWithoutWeights(Checks& checks)
 {
   auto weighted = SphereCloud();
-  vtkNew<vtkDoubleArray> weights;
-  weights->SetName("Weight");
-  weights->SetNumberOfTuples(weighted->GetNumberOfPoints());
-  weights->Fill(2);
-  weighted->GetPointData()->AddArray(weights);
+  weighted->GetPointData()->AddArray(Constant("Weight", weighted->GetNumberOfPoints(), 2));
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, weighted);
   blocks->SetBlock(1, SphereCloud(50, 2));
@@ -449,6 +487,8 @@ int TestImplicitFitterRefusals(int, char*[])
   TestDivergence(checks);
   TestOffsetsOutside(checks);
   TestNumbersThatAreNone(checks);
+  TestNumbersOutOfReach(checks);
+  TestAbsentArrays(checks);
   TestBlockWithoutNormals(checks);
   TestBlockWithoutWeights(checks);
   return checks.Result();

@@ -121,10 +121,7 @@ void TestNonFinitePoints(Checks& checks)
 void TestWeights(Checks& checks)
 {
   auto cloud = SphereCloud();
-  vtkNew<vtkDoubleArray> weights;
-  weights->SetName("Weight");
-  weights->SetNumberOfTuples(600);
-  weights->Fill(1);
+  auto weights = ipiatest::Constant("Weight", 600, 1);
   weights->SetValue(0, NaN);
   weights->SetValue(1, -1);
   weights->SetValue(2, Infinity);
@@ -149,10 +146,7 @@ void TestPointsOutsideBounds(Checks& checks)
 void TestNonFiniteExtraRows(Checks& checks)
 {
   auto rows = SphereCloud(10, 0.2);
-  vtkNew<vtkDoubleArray> values;
-  values->SetName("Value");
-  values->SetNumberOfTuples(10);
-  values->Fill(-0.8);
+  auto values = ipiatest::Constant("Value", 10, -0.8);
   values->SetValue(4, NaN);
   rows->GetPointData()->SetScalars(values);
   rows->GetPoints()->SetPoint(5, Infinity, 0, 0);

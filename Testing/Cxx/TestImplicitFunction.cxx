@@ -108,12 +108,8 @@ vtkSmartPointer<vtkImageData> Lattice(int nx, int ny, int nz, const char* name, 
 {
   auto lattice = vtkSmartPointer<vtkImageData>::New();
   lattice->SetDimensions(nx, ny, nz);
-  vtkNew<vtkDoubleArray> values;
-  values->SetName(name);
-  values->SetNumberOfComponents(components);
-  values->SetNumberOfTuples(lattice->GetNumberOfPoints());
-  values->Fill(1);
-  lattice->GetPointData()->AddArray(values);
+  lattice->GetPointData()->AddArray(
+    ipiatest::Constant(name, lattice->GetNumberOfPoints(), 1, components));
   return lattice;
 }
 
@@ -122,16 +118,8 @@ vtkSmartPointer<vtkImageData> WithFarField(
   vtkIdType values, int components, double sign, double magnitude)
 {
   auto lattice = Lattice(8, 8, 8, "Coefficient");
-  vtkNew<vtkDoubleArray> signs;
-  signs->SetName("FarField");
-  signs->SetNumberOfComponents(components);
-  signs->SetNumberOfTuples(values);
-  signs->Fill(sign);
-  lattice->GetFieldData()->AddArray(signs);
-  vtkNew<vtkDoubleArray> size;
-  size->SetName("FarFieldMagnitude");
-  size->InsertNextValue(magnitude);
-  lattice->GetFieldData()->AddArray(size);
+  lattice->GetFieldData()->AddArray(ipiatest::Constant("FarField", values, sign, components));
+  lattice->GetFieldData()->AddArray(ipiatest::Constant("FarFieldMagnitude", 1, magnitude));
   return lattice;
 }
 

@@ -3,6 +3,7 @@
  * The reconstruction in one step, with nothing set: the right pieces, facing outward, on the zero
  * set and on the shape, with the exact normals, in space, in the plane and far from the origin.
  */
+#include "IPIATestReconstruction.h"
 #include "IPIATestShapes.h"
 #include "IPIATestTopology.h"
 #include "IPIATestUtilities.h"
@@ -70,32 +71,8 @@ double TurnedArea(vtkPolyData* surface)
   return turned / total;
 }
 
-/// Every vertex lies on f = 0, and its normal is the direction of the gradient there.
-void CheckVertices(Checks& checks, vtkIPIASurfaceReconstruction* reconstruction,
-  double largestNormalError, const std::string& what)
-{
-  vtkPolyData* surface = reconstruction->GetOutput();
-  vtkDataArray* normals = surface->GetPointData()->GetNormals();
-  if (!checks.That(normals != nullptr, what + " has normals"))
-  {
-    return;
-  }
-  const double h = ipiatest::KnotSpacing(reconstruction->GetFitter());
-  double value = 0, difference = 0;
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    double x[3], g[3];
-    surface->GetPoint(i, x);
-    const double f =
-      reconstruction->GetFitter()->GetImplicitFunction()->EvaluateFunctionAndGradient(x, g);
-    vtkMath::Normalize(g);
-    value = std::max(value, std::abs(f));
-    difference =
-      std::max(difference, std::sqrt(vtkMath::Distance2BetweenPoints(g, normals->GetTuple3(i))));
-  }
-  checks.AtMost(value / h, 1e-4, what + ": |f| at the vertices, in knot spacings");
-  checks.AtMost(difference, largestNormalError, what + ": normals from the gradient");
-}
+/// In knot spacings, of a surface that is not cut.
+constexpr double LargestValue = 1e-4;
 
 void TestSurface(Checks& checks, const ipiatest::KnownSurface& surface, ipiatest::Choice choice)
 {
@@ -106,7 +83,7 @@ void TestSurface(Checks& checks, const ipiatest::KnownSurface& surface, ipiatest
   checks.Equal(ipiatest::TopologyOf(output),
     ipiatest::Topology{ surface.Components, surface.Genus, 0, 0 }, what);
   checks.Equal(reconstruction->GetNumberOfComponentsLeftOut(), 0, what + ": left out");
-  CheckVertices(checks, reconstruction, 1e-6, what);
+  ipiatest::CheckVertices(checks, reconstruction, LargestValue, 1e-6, what);
   double distance = 0;
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
   {
@@ -167,7 +144,7 @@ void TestMapCoordinates(Checks& checks)
     checks.AtMost(largest / size, 1e-6, "difference at map coordinates by the size");
     CheckSameCells(checks, moved->GetOutput(), plain->GetOutput(), "map coordinates");
   }
-  CheckVertices(checks, moved, 1e-6, "map coordinates");
+  ipiatest::CheckVertices(checks, moved, LargestValue, 1e-6, "map coordinates");
 }
 
 void TestPrecision(Checks& checks)
@@ -214,7 +191,7 @@ void TestOutlines(Checks& checks)
       checks.That(ipiatest::IsClosedCurve(curve), what + ": every loop is closed");
       checks.Equal(curve->GetBounds()[2 * across], height, what + ": lower height");
       checks.Equal(curve->GetBounds()[2 * across + 1], height, what + ": upper height");
-      CheckVertices(checks, reconstruction, 1e-6, what);
+      ipiatest::CheckVertices(checks, reconstruction, LargestValue, 1e-6, what);
     }
   }
 }
@@ -295,7 +272,7 @@ void TestComponentWithoutData(Checks& checks)
     checks.Equal(surface->GetPointData()->GetNumberOfArrays(), 1, what + ": arrays");
     checks.That(
       surface->GetFieldData()->GetArray("ResidualHistory") != nullptr, what + ": field data");
-    CheckVertices(checks, reconstruction, shift > 0 ? 1e-6 : 1e-5, what);
+    ipiatest::CheckVertices(checks, reconstruction, LargestValue, shift > 0 ? 1e-6 : 1e-5, what);
   }
 }
 

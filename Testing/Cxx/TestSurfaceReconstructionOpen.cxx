@@ -3,6 +3,7 @@
  * Where data end, the surface ends, with a clean border; closed surfaces stay closed, and holes
  * filled. In space and in the plane, by every way to a surface.
  */
+#include "IPIATestReconstruction.h"
 #include "IPIATestShapes.h"
 #include "IPIATestTopology.h"
 #include "IPIATestUtilities.h"
@@ -214,32 +215,11 @@ double BorderLength(vtkPolyData* surface)
   return length;
 }
 
-/// Every vertex, also of the cut, lies on f = 0 and has the direction of the gradient.
+/// Also those of the cut.
 void CheckVertices(
   Checks& checks, vtkIPIASurfaceReconstruction* reconstruction, const std::string& what)
 {
-  vtkPolyData* surface = reconstruction->GetOutput();
-  vtkDataArray* normals = surface->GetPointData()->GetNormals();
-  if (!checks.That(normals && normals->GetNumberOfTuples() == surface->GetNumberOfPoints(),
-        what + ": a normal for every vertex"))
-  {
-    return;
-  }
-  double value = 0, difference = 0;
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    double x[3], g[3];
-    surface->GetPoint(i, x);
-    const double f =
-      reconstruction->GetFitter()->GetImplicitFunction()->EvaluateFunctionAndGradient(x, g);
-    vtkMath::Normalize(g);
-    value = std::max(value, std::abs(f));
-    difference =
-      std::max(difference, std::sqrt(vtkMath::Distance2BetweenPoints(g, normals->GetTuple3(i))));
-  }
-  checks.AtMost(value / ipiatest::KnotSpacing(reconstruction->GetFitter()), 1e-3,
-    what + ": |f| at the vertices, in knot spacings");
-  checks.AtMost(difference, 1e-5, what + ": normals from the gradient");
+  ipiatest::CheckVertices(checks, reconstruction, 1e-3, 1e-5, what);
 }
 
 struct OpenSurface

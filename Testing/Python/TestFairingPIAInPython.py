@@ -3,17 +3,11 @@
 import numpy as np
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.test import Testing
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStructuredGrid
 
 from ipia import vtkFairingPIACurveFilter, vtkFairingPIAFilter, vtkFairingPIASurfaceFilter
-
-
-def vtk_points(positions):
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(positions), deep=True))
-    return points
+from python_testing import vtk_points
 
 
 def circle(count=100):

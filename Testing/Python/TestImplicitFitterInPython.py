@@ -3,12 +3,12 @@
 import numpy as np
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.test import Testing
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkConnectivityFilter, vtkFlyingEdges3D
 
 from ipia import vtkIPIAImplicitFitter, vtkIPIAImplicitFunction, vtkIPIASurfaceReconstruction
+from python_testing import classic_fitter, cloud
 
 
 def sphere(count=600):
@@ -18,27 +18,6 @@ def sphere(count=600):
     angle = np.pi * (1 + 5**0.5) * i
     r = np.sqrt(1 - z * z)
     return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
-
-
-def cloud(positions, normals):
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(positions, deep=True))
-    data = vtkPolyData()
-    data.SetPoints(points)
-    array = numpy_to_vtk(normals, deep=True)
-    array.SetName("Normals")
-    data.GetPointData().SetNormals(array)
-    return data
-
-
-def classic_fitter(data):
-    fitter = vtkIPIAImplicitFitter()
-    fitter.SetNumberOfLevels(1)
-    fitter.SetNormalConstraintToTwoSidedOffset()
-    fitter.SetSolverToConjugateGradient()
-    fitter.SetMaximumNumberOfIterations(15)
-    fitter.SetInputData(data)
-    return fitter
 
 
 class TestImplicitFitterInPython(Testing.vtkTest):

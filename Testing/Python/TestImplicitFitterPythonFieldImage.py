@@ -3,20 +3,11 @@
 import numpy as np
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, the rendering itself
 from vtkmodules.test import Testing
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges2D
 from vtkmodules.vtkFiltersGeometry import vtkImageDataGeometryFilter
-from vtkmodules.vtkRenderingCore import (
-    vtkActor,
-    vtkColorTransferFunction,
-    vtkPolyDataMapper,
-    vtkRenderer,
-    vtkRenderWindow,
-)
+from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
 
-from ipia import vtkIPIAImplicitFitter
+from python_testing import actor_of, classic_fitter, cloud, window_of
 
 
 def circles():
@@ -27,27 +18,10 @@ def circles():
     return positions, np.concatenate([normals, normals])
 
 
-def actor_of(algorithm):
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(algorithm.GetOutputPort())
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    return actor
-
-
 class TestImplicitFitterPythonFieldImage(Testing.vtkTest):
     def test_image(self):
         positions, normals = circles()
-        points = vtkPoints()
-        points.SetData(numpy_to_vtk(positions))
-        data = vtkPolyData()
-        data.SetPoints(points)
-        data.GetPointData().SetNormals(numpy_to_vtk(normals))
-
-        fitter = vtkIPIAImplicitFitter()
-        fitter.SetInputData(data)
-        fitter.SetNumberOfLevels(1)
-        fitter.SetNormalConstraintToTwoSidedOffset()
+        fitter = classic_fitter(cloud(positions, normals))
         fitter.SetSolverToProgressiveIteration()
         fitter.SetMaximumNumberOfIterations(100)
         fitter.SetGridSize(60, 60, 0)
@@ -74,14 +48,7 @@ class TestImplicitFitterPythonFieldImage(Testing.vtkTest):
         line.GetProperty().SetLineWidth(2)
         line.SetPosition(0, 0, 0.01)  # in front of the colours
 
-        renderer = vtkRenderer()
-        renderer.SetBackground(1, 1, 1)
-        renderer.AddActor(image)
-        renderer.AddActor(line)
-        window = vtkRenderWindow()
-        window.SetSize(300, 300)
-        window.SetMultiSamples(0)
-        window.AddRenderer(renderer)
+        window, renderer = window_of(image, line)
         renderer.ResetCamera()
         renderer.GetActiveCamera().Zoom(1.4)
         window.Render()

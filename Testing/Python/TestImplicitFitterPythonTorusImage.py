@@ -3,13 +3,9 @@
 import numpy as np
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, the rendering itself
 from vtkmodules.test import Testing
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
-from ipia import vtkIPIAImplicitFitter
+from python_testing import actor_of, classic_fitter, cloud, window_of
 
 
 def torus(ring, tube, count):
@@ -27,36 +23,16 @@ def torus(ring, tube, count):
 class TestImplicitFitterPythonTorusImage(Testing.vtkTest):
     def test_image(self):
         positions, normals = torus(1, 0.4, 60)
-        points = vtkPoints()
-        points.SetData(numpy_to_vtk(positions))
-        data = vtkPolyData()
-        data.SetPoints(points)
-        data.GetPointData().SetNormals(numpy_to_vtk(normals))
-
-        fitter = vtkIPIAImplicitFitter()
-        fitter.SetInputData(data)
-        fitter.SetNumberOfLevels(1)
-        fitter.SetNormalConstraintToTwoSidedOffset()
-        fitter.SetSolverToConjugateGradient()
-        fitter.SetMaximumNumberOfIterations(15)
+        fitter = classic_fitter(cloud(positions, normals))
         fitter.SetGridSize(40, 40, 40)
         surface = vtkFlyingEdges3D()
         surface.SetInputConnection(fitter.GetOutputPort())
         surface.SetValue(0, 0.0)
 
-        mapper = vtkPolyDataMapper()
-        mapper.SetInputConnection(surface.GetOutputPort())
-        mapper.ScalarVisibilityOff()
-        actor = vtkActor()
-        actor.SetMapper(mapper)
+        actor = actor_of(surface)
+        actor.GetMapper().ScalarVisibilityOff()
         actor.GetProperty().SetColor(0.9, 0.6, 0.3)
-        renderer = vtkRenderer()
-        renderer.SetBackground(1, 1, 1)
-        renderer.AddActor(actor)
-        window = vtkRenderWindow()
-        window.SetSize(300, 300)
-        window.SetMultiSamples(0)
-        window.AddRenderer(renderer)
+        window, renderer = window_of(actor)
         camera = renderer.GetActiveCamera()
         camera.SetPosition(0, -2, 1.5)
         camera.SetViewUp(0, 0, 1)

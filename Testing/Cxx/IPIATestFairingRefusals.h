@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What the fairing filters refuse, with one message and empty outputs; what they warn of; progress,
- * abort, and one object used again.
+ * @file
+ * What both fairing filters refuse, with one message and empty outputs; what they warn of;
+ * progress, abort, and one object used again.
  */
+#ifndef IPIATestFairingRefusals_h
+#define IPIATestFairingRefusals_h
+
 #include "IPIATestFairing.h"
 #include "IPIATestPipeline.h"
 
@@ -11,13 +15,8 @@
 
 #include <limits>
 
-namespace
+namespace ipiatest
 {
-using ipiatest::Checks;
-using ipiatest::Output;
-using ipiatest::Text;
-using ipiatest::Vector3;
-
 constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 
 using CurveFilter = vtkSmartPointer<vtkFairingPIACurveFilter>;
@@ -29,13 +28,13 @@ void Reset(Filter filter)
 {
   if constexpr (std::is_same_v<Filter, CurveFilter>)
   {
-    filter->SetInputData(ipiatest::ToLine(ipiatest::WavePoints(60)));
+    filter->SetInputData(ToLine(WavePoints(60)));
     filter->SetNumberOfControlPoints(0);
     filter->SetSampleDimensions(0);
   }
   else
   {
-    filter->SetInputData(ipiatest::WavyGrid(20, 20));
+    filter->SetInputData(WavyGrid(20, 20));
     filter->SetNumberOfControlPoints(0, 0);
     filter->SetSampleDimensions(0, 0);
   }
@@ -50,9 +49,9 @@ void Reset(Filter filter)
   filter->SetSolverToProgressiveIteration();
   filter->SetTolerance(1e-6);
   filter->SetStepSize(0);
-  ipiatest::Choose(filter, 0, 0, "");
-  ipiatest::Choose(filter, 1, 1, "FairingWeight");
-  ipiatest::Choose(filter, 2, 1, "None"); // as ParaView names it
+  Choose(filter, 0, 0, "");
+  Choose(filter, 1, 1, "FairingWeight");
+  Choose(filter, 2, 1, "None"); // as ParaView names it
 }
 
 /// A filter that has run well, so that what is refused must also be cleared.
@@ -62,11 +61,11 @@ Filter WarmFilter()
   auto filter = Filter::New();
   if constexpr (std::is_same_v<Filter, CurveFilter>)
   {
-    filter->SetInputData(ipiatest::ToLine(ipiatest::WavePoints(60)));
+    filter->SetInputData(ToLine(WavePoints(60)));
   }
   else
   {
-    filter->SetInputData(ipiatest::WavyGrid(20, 20));
+    filter->SetInputData(WavyGrid(20, 20));
   }
   filter->Update();
   return filter;
@@ -77,19 +76,19 @@ void CheckRefused(Checks& checks, const std::string& phrase, const std::string& 
   const std::function<void(Filter)>& spoil)
 {
   Filter filter = WarmFilter<Filter>();
-  checks.That(ipiatest::AllOutputsAreFinite(filter), what + ": good before");
-  vtkNew<ipiatest::MessageObserver> messages;
+  checks.That(AllOutputsAreFinite(filter), what + ": good before");
+  vtkNew<MessageObserver> messages;
   messages->Watch(filter);
   spoil(filter);
   filter->Update();
   messages->CheckOneError(checks, phrase, what);
-  checks.That(ipiatest::AllOutputsAreEmpty(filter), what + ": outputs are empty");
+  checks.That(AllOutputsAreEmpty(filter), what + ": outputs are empty");
   checks.Equal(filter->GetFittingError(), 0.0, what + ": fitting error");
   checks.Equal(filter->GetNumberOfIterationsUsed(), 0, what + ": iterations");
   Reset(filter);
   filter->Update();
   checks.That(messages->Errors.empty(), what + ", then a good input: no error");
-  checks.That(ipiatest::SameBits(filter, WarmFilter<Filter>()), what + ": as new afterwards");
+  checks.That(SameBits(filter, WarmFilter<Filter>()), what + ": as new afterwards");
 }
 
 /// A copy of the control points, with something done to it, on port 1.
@@ -102,19 +101,21 @@ void SpoilControls(Filter filter, const std::function<void(vtkPolyData*)>& spoil
   filter->SetControlPointsData(controls);
 }
 
-/// An array of one number.
-vtkSmartPointer<vtkDoubleArray> Constant(
-  const char* name, vtkIdType tuples, double value, int components = 1)
+/// Moves the points of the input away from the origin.
+template <typename Filter>
+void ScaleInput(Filter filter, double scale)
 {
-  auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
-  array->Fill(value);
-  return array;
+  auto* data = vtkPointSet::SafeDownCast(filter->GetInputDataObject(0, 0));
+  for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
+  {
+    double x[3];
+    data->GetPoint(k, x);
+    data->GetPoints()->SetPoint(k, x[0] * scale, x[1] * scale, x[2] * scale);
+  }
+  data->Modified();
 }
 
-/// Arrays that are not one number per point, of both filters.
+/// Arrays that are not one number per point.
 template <typename Filter>
 void TestArrays(Checks& checks, const std::string& name)
 {
@@ -126,7 +127,7 @@ void TestArrays(Checks& checks, const std::string& name)
     return vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
   };
   refused("The array of fairing weights, \"absent\", is not there",
-    [](Filter f) { ipiatest::Choose(f, 0, 0, "absent"); });
+    [](Filter f) { Choose(f, 0, 0, "absent"); });
   refused("\"text\", is a vtkStringArray",
     [&](Filter f)
     {
@@ -134,7 +135,7 @@ void TestArrays(Checks& checks, const std::string& name)
       text->SetName("text");
       text->SetNumberOfTuples(data(f)->GetNumberOfPoints());
       data(f)->GetPointData()->AddArray(text);
-      ipiatest::Choose(f, 0, 0, "text");
+      Choose(f, 0, 0, "text");
     });
   refused("\"w\", is not one of points",
     [&](Filter f)
@@ -152,7 +153,7 @@ void TestArrays(Checks& checks, const std::string& name)
     [&](Filter f)
     {
       data(f)->GetPointData()->AddArray(Constant("w", 3, 0.5));
-      ipiatest::Choose(f, 0, 0, "w");
+      Choose(f, 0, 0, "w");
     });
   refused("\"unused\" has 0 tuples",
     [&](Filter f) { data(f)->GetPointData()->AddArray(Constant("unused", 0, 0)); });
@@ -160,13 +161,13 @@ void TestArrays(Checks& checks, const std::string& name)
     [&](Filter f)
     {
       data(f)->GetPointData()->AddArray(Constant("w", data(f)->GetNumberOfPoints(), 0.5, 3));
-      ipiatest::Choose(f, 0, 0, "w");
+      Choose(f, 0, 0, "w");
     });
   refused("parameters, \"t\", has 4 components",
     [&](Filter f)
     {
       data(f)->GetPointData()->AddArray(Constant("t", data(f)->GetNumberOfPoints(), 0.5, 4));
-      ipiatest::Choose(f, 3, 0, "t");
+      Choose(f, 3, 0, "t");
       f->SetParametrizationToGiven();
     });
   for (const vtkIdType tuples : { 0, 3, 100000 })
@@ -184,7 +185,7 @@ void TestArrays(Checks& checks, const std::string& name)
         SpoilControls(f,
           [&](vtkPolyData* controls)
           { controls->GetPointData()->AddArray(Constant("m", tuples, 1)); });
-        ipiatest::Choose(f, 2, 1, "m");
+        Choose(f, 2, 1, "m");
       });
   }
   refused("may move is nan",
@@ -193,7 +194,7 @@ void TestArrays(Checks& checks, const std::string& name)
       SpoilControls(f,
         [](vtkPolyData* controls)
         { controls->GetPointData()->AddArray(Constant("m", controls->GetNumberOfPoints(), NaN)); });
-      ipiatest::Choose(f, 2, 1, "m");
+      Choose(f, 2, 1, "m");
     });
 }
 
@@ -271,14 +272,7 @@ void TestLimits(Checks& checks, const std::string& name)
     refused("The points have an extent of",
       [&](Filter f)
       {
-        auto* data = vtkPointSet::SafeDownCast(f->GetInputDataObject(0, 0));
-        for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
-        {
-          double x[3];
-          data->GetPoint(k, x);
-          data->GetPoints()->SetPoint(k, x[0] * scale, x[1] * scale, x[2] * scale);
-        }
-        data->Modified();
+        ScaleInput<Filter>(f, scale);
         f->Modified();
       });
   }
@@ -318,26 +312,19 @@ void TestLimits(Checks& checks, const std::string& name)
 template <typename Filter>
 void TestAccepted(Checks& checks, const std::string& name)
 {
-  vtkNew<ipiatest::MessageObserver> messages;
+  vtkNew<MessageObserver> messages;
   for (const double scale : { 1e-90, 1e-40, 1e40, 1e90 })
   {
     Filter filter = WarmFilter<Filter>();
     messages->Watch(filter);
-    auto* data = vtkPointSet::SafeDownCast(filter->GetInputDataObject(0, 0));
-    for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
-    {
-      double x[3];
-      data->GetPoint(k, x);
-      data->GetPoints()->SetPoint(k, x[0] * scale, x[1] * scale, x[2] * scale);
-    }
-    data->Modified();
+    ScaleInput(filter, scale);
     vtkSmartPointer<vtkPolyData> before = vtkSmartPointer<vtkPolyData>::New();
     before->DeepCopy(Output(filter, 0));
     filter->Update();
     const std::string what = Text(name, ", scaled by ", scale);
     checks.That(messages->Errors.empty(), what + ": no error");
     messages->Clear();
-    checks.That(ipiatest::AllOutputsAreFinite(filter), what + ": finite");
+    checks.That(AllOutputsAreFinite(filter), what + ": finite");
     // Curvatures are those before, in other units.
     const bool curve = std::is_same_v<Filter, CurveFilter>;
     const char* array = curve ? "Curvature" : "MeanCurvature";
@@ -364,34 +351,11 @@ void TestAccepted(Checks& checks, const std::string& name)
     SpoilControls(filter, [](vtkPolyData*) {});
     filter->Update();
     messages->CheckSilence(checks, Text(name, ", direct round ", round));
-    checks.That(ipiatest::AllOutputsAreFinite(filter), Text(name, ", direct round ", round));
+    checks.That(AllOutputsAreFinite(filter), Text(name, ", direct round ", round));
   }
 }
 
-/// A knot that differs by rounding from one that is there counts as that one.
-void TestKnotsByRounding(Checks& checks)
-{
-  const double knot = WarmFilter<CurveFilter>()
-                        ->GetOutputDataObject(1)
-                        ->GetFieldData()
-                        ->GetArray("Knots")
-                        ->GetComponent(6, 0);
-  auto filter = WarmFilter<CurveFilter>();
-  vtkNew<ipiatest::MessageObserver> messages;
-  messages->Watch(filter);
-  filter->SetSolverToSparseDirect();
-  filter->InsertKnot(std::nextafter(knot, 1.0));
-  filter->InsertKnot(std::nextafter(knot, 0.0));
-  filter->Update();
-  messages->CheckSilence(checks, "knot by rounding");
-  vtkDataArray* knots = Output(filter, 1)->GetFieldData()->GetArray("Knots");
-  checks.Equal(knots->GetComponent(8, 0), knot, "knot by rounding: three-fold");
-  filter->InsertKnot(std::nextafter(knot, 1.0));
-  filter->Update();
-  messages->CheckOneError(checks, "would be there more than 3 times", "knot by rounding");
-}
-
-/// Of both filters.
+/// Values that are out of range.
 template <typename Filter>
 void TestParameters(Checks& checks, const std::string& name)
 {
@@ -416,20 +380,19 @@ void TestParameters(Checks& checks, const std::string& name)
     [](Filter f)
     {
       auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
-      ipiatest::AddArray(data, "w", [](vtkIdType k) { return k == 3 ? 1.5 : 0.5; });
-      ipiatest::Choose(f, 0, 0, "w");
+      AddArray(data, "w", [](vtkIdType k) { return k == 3 ? 1.5 : 0.5; });
+      Choose(f, 0, 0, "w");
       f->Modified();
     });
   refused("Value 0 of the fairing weights \"w\" is nan",
     [](Filter f)
     {
       auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
-      ipiatest::AddArray(data, "w", [](vtkIdType) { return NaN; });
-      ipiatest::Choose(f, 0, 0, "w");
+      AddArray(data, "w", [](vtkIdType) { return NaN; });
+      Choose(f, 0, 0, "w");
       f->Modified();
     });
-  refused("lack the field data",
-    [](Filter f) { f->SetControlPointsData(ipiatest::ToLine(ipiatest::WavePoints(30))); });
+  refused("lack the field data", [](Filter f) { f->SetControlPointsData(ToLine(WavePoints(30))); });
   refused("Value 2 of the fairing weights \"FairingWeight\" is -1",
     [](Filter f)
     {
@@ -456,224 +419,21 @@ void TestParameters(Checks& checks, const std::string& name)
     });
 }
 
-void TestLines(Checks& checks)
-{
-  const auto refused = [&](const std::string& phrase, const std::vector<Vector3>& points,
-                         const std::function<void(CurveFilter)>& more = {})
-  {
-    CheckRefused<CurveFilter>(checks, phrase, phrase,
-      [&](CurveFilter f)
-      {
-        f->SetInputData(ipiatest::ToLine(points));
-        if (more)
-        {
-          more(f);
-        }
-      });
-  };
-  const auto good = ipiatest::WavePoints(30);
-  refused("needs 4 at least", ipiatest::WavePoints(3));
-  refused("needs 6 at least", ipiatest::WavePoints(5), [](CurveFilter f) { f->SetDegree(5); });
-  auto points = good;
-  points[7] = points[6];
-  refused("Points 6 and 7 follow each other", points);
-  points = good;
-  points[12][1] = NaN;
-  refused("Point 12 of line 0 is not finite", points);
-  points[12][1] = std::numeric_limits<double>::infinity();
-  refused("Point 12 of line 0 is not finite", points);
-  refused(
-    "NumberOfControlPoints is 31", good, [](CurveFilter f) { f->SetNumberOfControlPoints(31); });
-  refused(
-    "NumberOfControlPoints is 2", good, [](CurveFilter f) { f->SetNumberOfControlPoints(2); });
-  refused("The knot 1.5 cannot be inserted", good, [](CurveFilter f) { f->InsertKnot(1.5); });
-  refused("The knot 0.5 would be there more than 3 times", good,
-    [](CurveFilter f)
-    {
-      for (int k = 0; k < 4; ++k)
-      {
-        f->InsertKnot(0.5);
-      }
-    });
-  refused("those of 1 curves, the input has 2 lines", good,
-    [&](CurveFilter f)
-    {
-      vtkNew<vtkPolyData> controls;
-      controls->DeepCopy(Output(f, 1));
-      f->SetControlPointsData(controls);
-      vtkPolyData* data = vtkPolyData::SafeDownCast(f->GetInputDataObject(0, 0));
-      data->GetLines()->InsertNextCell({ 0, 1, 2, 3, 4, 5 });
-      data->Modified();
-    });
-  for (const vtkIdType id : { vtkIdType(-1), vtkIdType(30), vtkIdType(1) << 40 })
-  {
-    CheckRefused<CurveFilter>(checks, Text("Line 1 has a point ", id), "ids",
-      [&](CurveFilter f)
-      {
-        auto data = ipiatest::ToLine(good);
-        data->GetLines()->InsertNextCell({ 0, 1, 2, 3, 4, id });
-        f->SetInputData(data);
-      });
-  }
-  for (const bool empty : { false, true })
-  {
-    CheckRefused<CurveFilter>(checks, "The input has 0 points", "lines without points",
-      [&](CurveFilter f)
-      {
-        auto data = ipiatest::ToLine(good);
-        data->SetPoints(empty ? vtkSmartPointer<vtkPoints>::New() : nullptr);
-        f->SetInputData(data);
-      });
-  }
-  CheckRefused<CurveFilter>(checks, "has no lines", "no lines",
-    [](CurveFilter f)
-    {
-      auto data = ipiatest::ToLine(ipiatest::WavePoints(30));
-      data->SetLines(nullptr);
-      f->SetInputData(data);
-    });
-
-  const auto given = [&](
-                       const std::string& phrase, const std::function<double(vtkIdType)>& parameter)
-  {
-    CheckRefused<CurveFilter>(checks, phrase, phrase,
-      [&](CurveFilter f)
-      {
-        auto data = ipiatest::ToLine(good);
-        ipiatest::AddArray(data, "t", parameter);
-        f->SetInputData(data);
-        f->SetParametrizationToGiven();
-        ipiatest::Choose(f, 3, 0, "t");
-      });
-  };
-  const auto even = [](vtkIdType k) { return static_cast<double>(k) / 29; };
-  given("The parameters of line 0 fall", [&](vtkIdType k) { return k == 9 ? 0.2 : even(k); });
-  given("more than Degree knots coincide", [&](vtkIdType k) { return 1e-200 * even(k); });
-  given("The parameter of point 29 is 1.1", [&](vtkIdType k) { return k == 29 ? 1.1 : even(k); });
-  given("The parameter of point 4 is nan", [&](vtkIdType k) { return k == 4 ? NaN : even(k); });
-  given("All parameters of line 0 are 0.5", [](vtkIdType) { return 0.5; });
-  given(
-    "more than Degree knots coincide", [](vtkIdType k) { return k == 0 ? 0
-                                                           : k == 29   ? 1
-                                                                       : 0.5; });
-}
-
-void TestGrids(Checks& checks)
-{
-  const auto refused = [&](const std::string& phrase, vtkDataObject* data,
-                         const std::function<void(SurfaceFilter)>& more = {})
-  {
-    CheckRefused<SurfaceFilter>(checks, phrase, phrase,
-      [&](SurfaceFilter f)
-      {
-        f->SetInputDataObject(data);
-        if (more)
-        {
-          more(f);
-        }
-      });
-  };
-  refused("needs 16 at least", ipiatest::WavyGrid(3, 3));
-  refused("The grid has 3 points along v", ipiatest::WavyGrid(20, 3));
-  refused("NumberOfControlPoints along u is 21", ipiatest::WavyGrid(20, 20),
-    [](SurfaceFilter f) { f->SetNumberOfControlPoints(21, 5); });
-  refused("NumberOfControlPoints along v is -3", ipiatest::WavyGrid(20, 20),
-    [](SurfaceFilter f) { f->SetNumberOfControlPoints(5, -3); });
-  refused("whose points have no order", ipiatest::ToLine(ipiatest::WavePoints(30)));
-  auto solid = ipiatest::WavyGrid(20, 20);
-  solid->SetDimensions(10, 10, 4);
-  refused("has dimensions (10, 10, 4)", solid);
-  for (const int n : { 10, 30, 30000 })
-  {
-    auto other = ipiatest::WavyGrid(20, 20);
-    other->SetDimensions(n, n, 1);
-    refused("and 400 points", other);
-    refused("and 400 points", other, [](SurfaceFilter f) { f->SetParametrizationToGiven(); });
-  }
-  auto bad = ipiatest::WavyGrid(20, 20);
-  bad->GetPoints()->SetPoint(77, NaN, 0, 0);
-  refused("Point 77 is not finite", bad);
-  refused("points of lines 4 and 5",
-    ipiatest::ToGrid(20, 20,
-      [](double u, double v) {
-        return Vector3{ std::abs(u - 5.0 / 19) < 1e-9 ? 4.0 / 19 : u, v, 0 };
-      }));
-  refused("points are equal",
-    ipiatest::ToGrid(20, 20,
-      [](double, double) {
-        return Vector3{ 1, 2, 3 };
-      }));
-  refused("The knot 0 cannot be inserted", ipiatest::WavyGrid(20, 20),
-    [](SurfaceFilter f) { f->InsertKnot(1, 0); });
-
-  const auto given = [&](const std::string& phrase, double u, double v)
-  {
-    refused(phrase, ipiatest::WavyGrid(10, 10),
-      [&](SurfaceFilter f)
-      {
-        auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
-        vtkNew<vtkDoubleArray> uv;
-        uv->SetNumberOfComponents(2);
-        for (int k = 0; k < 100; ++k)
-        {
-          uv->InsertNextTuple2(k % 10 / 9.0, k / 10 / 9.0);
-        }
-        uv->SetTuple2(55, u, v);
-        data->GetPointData()->SetTCoords(uv);
-        f->SetParametrizationToGiven();
-      });
-  };
-  given("The parameter u of point 55 is 1.2", 1.2, 0.5);
-  given("The parameter v of point 55 is -0.1", 0.5, -0.1);
-  given("The parameter v of point 55 is nan", 0.5, NaN);
-  refused("more than 4 times the 400 points", ipiatest::WavyGrid(20, 20),
-    [](SurfaceFilter f)
-    {
-      auto* data = vtkDataSet::SafeDownCast(f->GetInputDataObject(0, 0));
-      vtkNew<vtkDoubleArray> uv;
-      uv->SetNumberOfComponents(2);
-      for (int k = 0; k < 400; ++k)
-      {
-        uv->InsertNextTuple2(k % 20 / 19.0, k / 20 / 19.0);
-      }
-      data->GetPointData()->SetTCoords(uv);
-      f->SetParametrizationToGiven();
-      f->SetNumberOfControlPoints(2000000000, 100000);
-    });
-}
-
 template <typename Filter>
 void TestWarning(Checks& checks, const std::string& name)
 {
   Filter filter = WarmFilter<Filter>();
-  vtkNew<ipiatest::MessageObserver> messages;
+  vtkNew<MessageObserver> messages;
   messages->Watch(filter);
   filter->SetMaximumNumberOfIterations(2);
   filter->Update();
   messages->CheckOneWarning(checks, "did not reach the tolerance", name + ", two iterations");
-  checks.That(ipiatest::AllOutputsAreFinite(filter), name + ": the result is there");
+  checks.That(AllOutputsAreFinite(filter), name + ": the result is there");
   checks.Equal(filter->GetNumberOfIterationsUsed(), 2, name + ": iterations");
   // Who asks for a number of iterations gets it without a word.
   filter->SetTolerance(0);
   filter->Update();
   messages->CheckSilence(checks, name + ", no tolerance");
-}
-
-/// The fit by which control points are chosen is all but energy, which takes more iterations than
-/// the round that follows.
-void TestChoiceWarning(Checks& checks)
-{
-  auto filter = WarmFilter<CurveFilter>();
-  filter->SetAutomaticFairingToCurvatureVariation();
-  filter->SetFairingWeight(0.999);
-  filter->SetAutomaticShare(1);
-  filter->SetAutomaticFairingWeight(1e-9);
-  filter->SetTolerance(1e-3);
-  filter->SetMaximumNumberOfIterations(15);
-  vtkNew<ipiatest::MessageObserver> messages;
-  messages->Watch(filter);
-  filter->Update();
-  messages->CheckOneWarning(checks, "by which AutomaticFairing chose", "unfinished choice");
 }
 
 template <typename Filter>
@@ -684,15 +444,15 @@ void TestAbort(Checks& checks, const std::string& name)
     Filter filter = WarmFilter<Filter>();
     filter->SetTolerance(0);
     filter->SetMaximumNumberOfIterations(100);
-    vtkNew<ipiatest::ProgressObserver> progress;
+    vtkNew<ProgressObserver> progress;
     progress->AbortAt = share;
     const unsigned long tag = filter->AddObserver(vtkCommand::ProgressEvent, progress);
-    vtkNew<ipiatest::MessageObserver> messages;
+    vtkNew<MessageObserver> messages;
     messages->Watch(filter);
     filter->Update();
     const std::string what = Text(name, ", abort at ", share);
     messages->CheckSilence(checks, what);
-    checks.That(ipiatest::AllOutputsAreEmpty(filter), what + ": outputs are empty");
+    checks.That(AllOutputsAreEmpty(filter), what + ": outputs are empty");
     const auto late = std::count_if(progress->Values.begin(), progress->Values.end(),
       [&](double value) { return value >= share; });
     checks.AtMost(static_cast<double>(late), 2, what + ": reports after it");
@@ -700,66 +460,48 @@ void TestAbort(Checks& checks, const std::string& name)
     filter->SetAbortExecute(0);
     filter->Modified();
     filter->Update();
-    checks.That(ipiatest::AllOutputsAreFinite(filter), what + ": the next update is a whole one");
+    checks.That(AllOutputsAreFinite(filter), what + ": the next update is a whole one");
   }
   Filter filter = WarmFilter<Filter>();
   filter->Modified();
-  vtkNew<ipiatest::ProgressObserver> progress;
+  vtkNew<ProgressObserver> progress;
   filter->AddObserver(vtkCommand::ProgressEvent, progress);
   filter->Update();
   progress->CheckRise(checks, name + ": progress");
 }
 
 /// A second input is as for a new object, and refusals leave no trace.
-void TestReuse(Checks& checks)
+template <typename Filter>
+void TestReuse(Checks& checks, vtkDataObject* refused, vtkDataObject* good)
 {
-  auto used = WarmFilter<CurveFilter>();
-  vtkNew<ipiatest::MessageObserver> messages;
+  auto used = WarmFilter<Filter>();
+  vtkNew<MessageObserver> messages;
   messages->Watch(used);
-  used->SetInputData(ipiatest::ToLine(ipiatest::WavePoints(2)));
+  used->SetInputDataObject(refused);
   used->Update();
   messages->Clear();
-  auto line = ipiatest::ToLine(ipiatest::StarfishPoints(90, 0.01), true);
-  used->SetInputData(line);
+  used->SetInputDataObject(good);
   used->Update();
   messages->CheckSilence(checks, "reuse");
-  auto fresh = CurveFilter::New();
-  fresh->SetInputData(line);
+  auto fresh = Filter::New();
+  fresh->SetInputDataObject(good);
   fresh->Update();
-  checks.That(ipiatest::SameBits(used, fresh), "reuse: as a new object");
-
-  auto grid = WarmFilter<SurfaceFilter>();
-  auto data = ipiatest::WavyGrid(31, 17, 0.01);
-  grid->SetInputData(data);
-  grid->Update();
-  auto other = SurfaceFilter::New();
-  other->SetInputData(data);
-  other->Update();
-  checks.That(ipiatest::SameBits(grid, other), "surface reuse: as a new object");
-}
+  checks.That(SameBits(used, fresh), "reuse: as a new object");
 }
 
-int TestFairingPIARefusals(int, char*[])
+/// All of the above. @param refused, good  inputs
+template <typename Filter>
+void TestSharedRefusals(
+  Checks& checks, const std::string& name, vtkDataObject* refused, vtkDataObject* good)
 {
-  Checks checks;
-  vtkNew<ipiatest::MessageObserver> window;
-  ipiatest::WindowWatch watch(window);
-  TestParameters<CurveFilter>(checks, "curve");
-  TestParameters<SurfaceFilter>(checks, "surface");
-  TestArrays<CurveFilter>(checks, "curve");
-  TestArrays<SurfaceFilter>(checks, "surface");
-  TestLimits<CurveFilter>(checks, "curve");
-  TestLimits<SurfaceFilter>(checks, "surface");
-  TestAccepted<CurveFilter>(checks, "curve");
-  TestAccepted<SurfaceFilter>(checks, "surface");
-  TestKnotsByRounding(checks);
-  TestLines(checks);
-  TestGrids(checks);
-  TestWarning<CurveFilter>(checks, "curve");
-  TestWarning<SurfaceFilter>(checks, "surface");
-  TestChoiceWarning(checks);
-  TestAbort<CurveFilter>(checks, "curve");
-  TestAbort<SurfaceFilter>(checks, "surface");
-  TestReuse(checks);
-  return checks.Result();
+  TestParameters<Filter>(checks, name);
+  TestArrays<Filter>(checks, name);
+  TestLimits<Filter>(checks, name);
+  TestAccepted<Filter>(checks, name);
+  TestWarning<Filter>(checks, name);
+  TestAbort<Filter>(checks, name);
+  TestReuse<Filter>(checks, refused, good);
 }
+}
+
+#endif
