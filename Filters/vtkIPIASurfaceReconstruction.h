@@ -121,7 +121,7 @@ public:
   ///@{
   /**
    * Unsupported parts inside the domain up to this size are holes and stay filled: their area (in
-   * 2-D their length) over that of the supported surface. >= 0, default 0.3.
+   * 2-D their length) over that of the supported surface. >= 0, default 0.15.
    */
   vtkSetClampMacro(HoleSize, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(HoleSize, double);

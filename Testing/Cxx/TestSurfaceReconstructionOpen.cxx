@@ -553,7 +553,7 @@ void TestParameters(Checks& checks)
   vtkNew<vtkIPIASurfaceReconstruction> reconstruction;
   checks.Equal(reconstruction->GetTrimUnsupported(), true, "TrimUnsupported by default");
   checks.Equal(reconstruction->GetTrimDistance(), 3., "TrimDistance by default");
-  checks.Equal(reconstruction->GetHoleSize(), 0.3, "HoleSize by default");
+  checks.Equal(reconstruction->GetHoleSize(), 0.15, "HoleSize by default");
   reconstruction->SetTrimDistance(0);
   checks.Equal(reconstruction->GetTrimDistance(), 1., "least TrimDistance");
   reconstruction->SetHoleSize(-1);
