@@ -64,7 +64,7 @@ def write(surface, path):
 
 def show(name, *values):
     """One line: what was measured, and its values with their units."""
-    print(f"{name:<52}" + " ".join(str(value) for value in values), flush=True)
+    print(f"{name:<54}" + " ".join(str(value) for value in values), flush=True)
 
 
 def dots(data, colour=SLATE, size=2.0):
@@ -119,24 +119,22 @@ def colour_range(low, high, colours):
     return transfer
 
 
-def add_scale(renderer, title, transfer, digits):
+def add_scale(renderer, transfer, digits):
     """The colours of a surface and their values, in the lower left corner of its tile."""
     bar = vtk.vtkScalarBarActor()
     bar.SetLookupTable(transfer)
-    bar.SetTitle(title)
     bar.SetNumberOfLabels(3)
     bar.SetLabelFormat(digits)
     bar.SetOrientationToHorizontal()
     bar.SetUnconstrainedFontSize(True)
-    for style in (bar.GetLabelTextProperty(), bar.GetTitleTextProperty()):
-        style.SetColor(*INK)
-        style.SetFontSize(SCALE * 12)
-        style.SetShadow(False)
-        style.SetItalic(False)
-        style.SetBold(False)
-    bar.GetPositionCoordinate().SetValue(0.02, 0.02)
-    bar.SetWidth(0.4)
-    bar.SetHeight(0.14)
-    bar.SetBarRatio(0.3)
-    bar.SetVerticalTitleSeparation(SCALE * 4)
+    style = bar.GetLabelTextProperty()
+    style.SetColor(*INK)
+    style.SetFontSize(SCALE * 12)
+    style.SetShadow(False)
+    style.SetItalic(False)
+    style.SetBold(False)
+    bar.GetPositionCoordinate().SetValue(0.04, 0.02)
+    bar.SetWidth(0.3)
+    bar.SetHeight(0.1)
+    bar.SetBarRatio(0.4)
     renderer.AddActor2D(bar)

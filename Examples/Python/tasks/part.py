@@ -124,7 +124,7 @@ def main():
         flat = far_from(points_of(surface), edges, 3 * spacing)
         show(name + ": elsewhere off by, mean and 99 %, mm",
              *(f"{v:.4f}" for v in (apart[flat].mean(), np.percentile(apart[flat], 99))))
-        made.append((f"{name}: spacing {spacing:.2f} mm", surface))
+        made.append((f"{name}: knot spacing {spacing:.2f} mm", surface))
     write(made[0][1], given.output / "part.vtp")
     if not given.no_picture:
         seen = View(direction=(0.5, 0.5, 1), up=(0, 1, 0))
@@ -136,7 +136,7 @@ def main():
             tile = sheet.tile(0, column, title, [actor], seen)
             light(tile)
             if column == 0:
-                add_scale(tile, "off, mm", colours, "%.1f")
+                add_scale(tile, colours, "%.1f")
         sheet.write(given.output / "task-part.png")
     return 0
 

@@ -138,10 +138,10 @@ def main():
                                ((0.36, 0.55, 0.36), (0.86, 0.83, 0.58), (0.72, 0.50, 0.33)))
         relief = shaded(low)
         relief.GetMapper().SetLookupTable(heights)
-        tile = sheet.tile(0, 1, f"terrain, lines every {INTERVAL} m",
+        tile = sheet.tile(0, 1, f"terrain: height in m, lines every {INTERVAL} m",
                           [relief, lines(moved(contours, -centre), INK, 0.6)], seen)
         light(tile)
-        add_scale(tile, "height, m", heights, "%.1f")
+        add_scale(tile, heights, "%.1f")
         for column, title, surface in ((0, "all points, nothing set", smooth),
                                        (1, "all points, FairingWeight 5e-5", roofs.GetOutput())):
             light(sheet.tile(1, column, title, [shaded(moved(surface, -centre))], seen))
