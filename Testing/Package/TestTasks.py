@@ -48,7 +48,9 @@ class TestTasks(unittest.TestCase):
         cls.table = {row[0]: row[1:] for row in rows if len(row) > 2}
 
     def test_ends_without_messages(self):
-        self.assertEqual((self.code, self.messages), (0, ""))
+        self.assertEqual(self.code, 0, self.messages)
+        if SCRIPT != "EstimateNormals.py":  # which may be warned of wrong normals
+            self.assertEqual(self.messages, "")
 
     def test_figures_are_those_of_the_page(self):
         expected, _, _ = self.scripts.figures_on(PAGE.read_text(encoding="utf-8"), SCRIPT)
@@ -82,9 +84,8 @@ class TestTasks(unittest.TestCase):
         self.assertLessEqual(self.number("border from the nearest point at most, m"),
                              3 * self.number("point spacing, m"))
         self.assertLess(self.number("of points left out, median and 90 %, m"), 0.05)
-        self.assertGreater(self.number("all points: smoothing length, m"), 1)
-        self.assertLess(self.number("with FairingWeight: median distance, m"),
-                        self.number("all points: median distance, m") / 2)
+        median = self.numbers("all points, FairingWeight 5e-5: median distance, m")[-1]
+        self.assertLess(median, 0.03)
 
     def check_statue(self):
         self.assertGreaterEqual(self.number("Padding 0.05: parts trimmed"), 1)

@@ -134,7 +134,7 @@ def add_scale(renderer, transfer, digits):
     style.SetItalic(False)
     style.SetBold(False)
     bar.GetPositionCoordinate().SetValue(0.04, 0.02)
-    bar.SetWidth(0.3)
+    bar.SetWidth(0.25)
     bar.SetHeight(0.1)
     bar.SetBarRatio(0.4)
     renderer.AddActor2D(bar)

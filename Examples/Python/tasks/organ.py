@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Organ: the segmented liver of a CT as a smooth surface, without the steps of its voxels and slices.
+"""Organ: the segmented liver of a CT as a smooth surface, without the steps of its voxels.
 
     python3 organ.py --data build/data
 

@@ -64,9 +64,11 @@ def sharp_edges(part):
     edges.Update()
     ends = points_of(edges.GetOutput())
     lines = vtk_to_numpy(edges.GetOutput().GetLines().GetConnectivityArray()).reshape(-1, 2)
-    return np.vstack([first + np.linspace(0, 1, int(np.ceil(np.linalg.norm(last - first) / STEP)) + 1
-                                          )[:, None] * (last - first)
-                      for first, last in zip(ends[lines[:, 0]], ends[lines[:, 1]])])
+    places = []
+    for first, last in zip(ends[lines[:, 0]], ends[lines[:, 1]]):
+        count = int(np.ceil(np.linalg.norm(last - first) / STEP)) + 1
+        places.append(first + np.linspace(0, 1, count)[:, None] * (last - first))
+    return np.vstack(places)
 
 
 def far_from(points, others, distance):

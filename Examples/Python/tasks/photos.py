@@ -4,8 +4,9 @@
 
     python3 photos.py --data build/data
 
-A set of photographs is simulated: points on refined_elephant.off of Debian's package libcgal-demo, denser
-here than there, with errors of depth and of colour. So the true surface and its colours are known.
+A set of photographs is simulated: points on refined_elephant.off of Debian's package libcgal-demo,
+denser here than there, with errors of depth and of colour. So the true surface and its colours are
+known.
 """
 import sys
 
@@ -117,9 +118,10 @@ def main():
     locator.BuildLocator()
     some = slice(None, None, 10)
     nearest = np.array([locator.FindClosestPoint(x) for x in at[some]])
-    show("colours of the nearest points, rms error", f"{rms(colours[nearest] - true_colours(at[some])):.1f} of 255")
+    true = true_colours(at[some])
+    show("colours of the nearest points, rms error", f"{rms(colours[nearest] - true):.1f} of 255")
     show("colours of the surface, rms error",
-         f"{rms(colours_of(surface)[some] - true_colours(at[some])):.1f} of 255")
+         f"{rms(colours_of(surface)[some] - true):.1f} of 255")
 
     clean = vtkIPIASurfaceReconstruction()
     clean.SetInputData(data)

@@ -4,7 +4,7 @@
 
     python3 run_all.py --data build/data --output ipia-output/tasks [--page Documentation/Tasks.md]
 
-With a page, the figures of a script go between the lines of ``` that follow <!-- figures: SCRIPT -->.
+With a page, the figures of a script go between the lines of ``` after <!-- figures: SCRIPT -->.
 """
 import argparse
 from pathlib import Path

@@ -4,8 +4,8 @@
 
     python3 statue.py --data build/data
 
-A scanner is simulated: rays from ten places to a mesh (the armadillo of Debian's package libcgal-demo, as
-a statue of 1.8 m), with noise. So the true surface is known.
+A scanner is simulated: rays from ten places to a mesh (the armadillo of Debian's package
+libcgal-demo, as a statue of 1.8 m), with noise. So the true surface is known.
 """
 import sys
 
@@ -65,7 +65,7 @@ def scanner_places():
 
 
 def scan(statue, locator, place, random):
-    """Points that the rays of a scanner hit first, with normals from their neighbours in the scan."""
+    """Points that the rays of a scanner hit first, with normals from their neighbours in it."""
     face_normals = vtk_to_numpy(statue.GetCellData().GetNormals())
     middle = np.array((0, 0, HEIGHT / 2))
     forward = (middle - place) / AWAY
