@@ -38,7 +38,7 @@ PYTHONPATH=$build/lib/python3/dist-packages xvfb-run -a /usr/bin/python3 \
 if [ ${#page[@]} -gt 0 ]; then
   for picture in "$output"/task-*.png; do
     # A palette takes a third of the room.
-    convert "$picture" -dither None -colors 256 -define png:compression-level=9 \
+    convert "$picture" -strip -dither None -colors 256 -define png:compression-level=9 \
       "png8:$images/$(basename "$picture")"
   done
 fi

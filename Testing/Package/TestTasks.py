@@ -47,10 +47,9 @@ class TestTasks(unittest.TestCase):
         cls.figures = {row[0]: row[1] for row in rows if len(row) == 2}
         cls.table = {row[0]: row[1:] for row in rows if len(row) > 2}
 
-    def test_ends_without_messages(self):
+    def test_ends_without_errors(self):
         self.assertEqual(self.code, 0, self.messages)
-        if SCRIPT != "EstimateNormals.py":  # which may be warned of wrong normals
-            self.assertEqual(self.messages, "")
+        self.assertNotIn("ERR|", self.messages)  # warnings are what some of the data deserve
 
     def test_figures_are_those_of_the_page(self):
         expected, _, _ = self.scripts.figures_on(PAGE.read_text(encoding="utf-8"), SCRIPT)
