@@ -47,10 +47,7 @@ if [ -z "$points" ]; then
   echo "scan      the Stanford bunny, from the Debian package glmark2-data"
 fi
 
-run_quietly "configure" "$build/configure.log" cmake -S "$source_dir" -B "$build" -G Ninja \
-  -DCMAKE_BUILD_TYPE=Release -DPython3_EXECUTABLE=/usr/bin/python3 \
-  -DIPIA_BUILD_TESTING=OFF -DIPIA_BUILD_EXAMPLES=OFF
-run_quietly "build" "$build/build.log" cmake --build "$build"
+build_release "$source_dir" "$build"
 
 # Where other programs share the cores, OpenMP's threads would spin while they wait for one that has
 # none: the bunny then takes up to twice as long. Threads that sleep cost nothing on an idle machine.

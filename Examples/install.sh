@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# What the commands that install what is missing have in common: Examples/demo.sh, Testing/run.sh and
-# those of Testing/Benchmark.
+# What the commands that install what is missing have in common: Examples/demo.sh, Examples/tasks.sh,
+# Testing/run.sh and those of Testing/Benchmark.
 
 as_root()
 {
@@ -131,7 +131,16 @@ download_and_unpack()
     rm "$1"_*.deb
 )
 
-# unpack_scans FOLDER: meshes/ and points_3/ of the Debian package libcgal-demo, unless they are there.
+# build_release SOURCE FOLDER: the library and its Python package.
+build_release()
+{
+  run_quietly "configure" "$2/configure.log" cmake -S "$1" -B "$2" -G Ninja \
+    -DCMAKE_BUILD_TYPE=Release -DPython3_EXECUTABLE=/usr/bin/python3 \
+    -DIPIA_BUILD_TESTING=OFF -DIPIA_BUILD_EXAMPLES=OFF
+  run_quietly "build" "$2/build.log" cmake --build "$2"
+}
+
+# unpack_scans FOLDER: meshes/, points_3/ and images/ of the Debian package libcgal-demo, unless they are there.
 unpack_scans()
 {
   local folder=$1 archive=$1/package/usr/share/doc/libcgal-dev/data.tar.gz

@@ -24,7 +24,6 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import (
-    vtkFeatureEdges,
     vtkImplicitPolyDataDistance,
     vtkPolyDataConnectivityFilter,
     vtkPolyDataNormals,
@@ -302,14 +301,14 @@ def with_normals(data):
 
 
 def number_of_open_edges(surface):
-    edges = vtkFeatureEdges()
-    edges.SetInputData(surface)
-    edges.FeatureEdgesOff()
-    edges.NonManifoldEdgesOff()
-    edges.ManifoldEdgesOff()
-    edges.BoundaryEdgesOn()
-    edges.Update()
-    return edges.GetOutput().GetNumberOfLines()
+    """Edges of a single face. vtkFeatureEdges of VTK 9.1 takes memory by the square of the points."""
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).astype(np.int64)
+    offsets = vtk_to_numpy(surface.GetPolys().GetOffsetsArray())
+    following = np.roll(corners, -1)
+    following[offsets[1:] - 1] = corners[offsets[:-1]]
+    smaller, larger = np.minimum(corners, following), np.maximum(corners, following)
+    faces = np.unique(smaller * surface.GetNumberOfPoints() + larger, return_counts=True)[1]
+    return int(np.count_nonzero(faces == 1))
 
 
 def number_of_components(surface):

@@ -42,30 +42,38 @@ PLANAR_VIEW = View()
 
 
 class Sheet:
-    """Rows and columns of tiles, a title above each; tile_size is (width, height) in pixels."""
+    """
+    Rows and columns of tiles, a title above each; tile_size is (width, height) in pixels. With a
+    scale everything is drawn so many times as large and then reduced, which makes edges smooth;
+    sizes of points and widths of lines are those before.
+    """
 
-    def __init__(self, rows, columns, tile_size):
-        self._rows, self._columns = rows, columns
+    def __init__(self, rows, columns, tile_size, scale=1):
+        self._rows, self._columns, self._scale = rows, columns, scale
         width, height = tile_size
         self._aspect = width / height
         self._title_share = TITLE_HEIGHT / (height + TITLE_HEIGHT)
         self._window = vtk.vtkRenderWindow()
         self._window.SetOffScreenRendering(1)
         self._window.SetMultiSamples(0)
-        self._window.SetSize(columns * width, rows * (height + TITLE_HEIGHT))
+        self._size = columns * width, rows * (height + TITLE_HEIGHT)
+        self._window.SetSize(*(scale * side for side in self._size))
         blank = vtk.vtkRenderer()
         blank.SetBackground(*WHITE)
         self._window.AddRenderer(blank)
 
     def tile(self, row, column, title, actors, view=PLANAR_VIEW):
+        """Draws the tile and returns its renderer."""
         bottom, top = 1 - (row + 1) / self._rows, 1 - row / self._rows
         left, right = column / self._columns, (column + 1) / self._columns
         title_bottom = top - self._title_share * (top - bottom)
-        self._add_renderer((left, title_bottom, right, top)).AddActor2D(_title(title))
+        self._add_renderer((left, title_bottom, right, top)).AddActor2D(
+            _title(title, self._scale))
         picture = self._add_renderer((left, bottom, right, title_bottom))
         for actor in actors:
             picture.AddActor(actor)
         _aim(picture, actors, view, self._aspect)
+        return picture
 
     def write(self, path):
         self._window.Render()
@@ -75,6 +83,11 @@ class Sheet:
         writer = vtk.vtkPNGWriter()
         writer.SetFileName(str(path))
         writer.SetInputConnection(picture.GetOutputPort())
+        if self._scale > 1:
+            smaller = vtk.vtkImageResize()
+            smaller.SetInputConnection(picture.GetOutputPort())
+            smaller.SetOutputDimensions(*self._size, 1)
+            writer.SetInputConnection(smaller.GetOutputPort())
         writer.Write()
         self._window.Finalize()
 
@@ -124,11 +137,11 @@ def _actor(data, colour):
     return actor
 
 
-def _title(text):
+def _title(text, scale):
     actor = vtk.vtkTextActor()
     actor.SetInput(text)
     style = actor.GetTextProperty()
-    style.SetFontSize(TITLE_SIZE)
+    style.SetFontSize(scale * TITLE_SIZE)
     style.SetColor(*INK)
     style.SetJustificationToCentered()
     style.SetVerticalJustificationToCentered()
@@ -149,7 +162,9 @@ def _aim(renderer, actors, view, aspect):
     camera.ParallelProjectionOn()
     camera.SetParallelScale(half_height * MARGIN)
     camera.SetFocalPoint(*centre)
-    camera.SetPosition(*(np.asarray(centre) + CAMERA_DISTANCE * back))
+    bounds = np.array(renderer.ComputeVisiblePropBounds()).reshape(3, 2)
+    distance = max(CAMERA_DISTANCE, np.linalg.norm(bounds[:, 1] - bounds[:, 0]))
+    camera.SetPosition(*(np.asarray(centre) + distance * back))
     camera.SetViewUp(*up)
     renderer.ResetCameraClippingRange()
 

@@ -52,6 +52,11 @@ def _fetch_package(target):
         tar.extractall(target)
 
 
+def mesh_polydata(path):
+    """The mesh of an OFF file, as it is there."""
+    return _polydata(*_read_off(path))
+
+
 def mesh_cloud(path, count, random):
     """
     count points of a mesh, normalised: of its vertices if there are enough, else all of them and
@@ -85,15 +90,19 @@ def _read_off(path):
     return vertices[used], new_index[faces[:, 1:]]
 
 
-def _vertex_normals(vertices, triangles):
-    """Outward vertex normals of an oriented mesh."""
+def _polydata(vertices, triangles):
     cells = vtk.vtkCellArray()
     cells.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 3 * len(triangles) + 1, 3), deep=True),
                   numpy_to_vtkIdTypeArray(triangles.ravel().copy(), deep=True))
     mesh = points_polydata(vertices)
     mesh.SetPolys(cells)
+    return mesh
+
+
+def _vertex_normals(vertices, triangles):
+    """Outward vertex normals of an oriented mesh."""
     filter_ = vtk.vtkPolyDataNormals()
-    filter_.SetInputData(mesh)
+    filter_.SetInputData(_polydata(vertices, triangles))
     filter_.SplittingOff()
     filter_.ConsistencyOff()
     filter_.Update()
