@@ -49,6 +49,12 @@ def reconstruction_of(points):
     return reconstruction
 
 
+def ground_of(points):
+    reconstruction = reconstruction_of(points)
+    reconstruction.SetHoleSize(0.3)  # fills the place of the building
+    return reconstruction
+
+
 def contour_lines(surface, interval):
     """Lines of equal height, at multiples of the interval."""
     heights = points_of(surface)[:, 2]
@@ -90,7 +96,7 @@ def main():
     show("easting, northing of the first, m", *(f"{v:.3f}" for v in everything[0, :2]))
     show("ground points", len(ground))
 
-    reconstruction = reconstruction_of(ground)
+    reconstruction = ground_of(ground)
     reconstruction.Update()
     terrain, fitter = reconstruction.GetOutput(), reconstruction.GetFitter()
     show("precision of the surface", terrain.GetPoints().GetData().GetDataTypeAsString())
@@ -103,7 +109,7 @@ def main():
     show("distance of the points, median and 90 %, m",
          *(f"{v:.3f}" for v in np.percentile(apart, (50, 90))))
     held_out = np.arange(len(ground)) % HELD_OUT == HELD_OUT // 2
-    check = reconstruction_of(ground[~held_out])
+    check = ground_of(ground[~held_out])
     check.Update()
     apart = distances(ground[held_out], check.GetOutput())
     show("of points left out, median and 90 %, m",
