@@ -40,6 +40,9 @@ constexpr double BytesPerBrick = 2048, BytesPerAbsentBrick = 16;
 /// and coefficient while a component is sampled.
 constexpr double BytesPerArrayPoint = 320, BytesPerArrayValue = 16, BytesPerBrickOfArray = 1024;
 constexpr double BytesPerArraySample = 8, BytesPerArrayCoefficient = 16;
+/// Of the surface that is contoured in bricks: triangles per cell of three sides of the lattice,
+/// most of them per brick, and bytes per triangle at the peak.
+constexpr double TrianglesPerSideCell = 8, TrianglesPerBrick = 128, BytesPerTriangle = 115;
 /// Bricks around a brick with data, and layers of them on both sides of a surface that crosses the
 /// lattice twice along every axis.
 constexpr double BricksAroundOne = 27, LayersOfBricks = 6;
@@ -445,7 +448,10 @@ void FitProblem::CheckMemory(const FitParameters& parameters)
   }
   if (this->staysInBricks(parameters))
   {
-    needed += allBricks * BytesPerAbsentBrick + stored * BytesPerBrick;
+    const double triangles =
+      std::min(TrianglesPerSideCell * 16 * sides, TrianglesPerBrick * BricksAroundOne * rows);
+    needed +=
+      allBricks * BytesPerAbsentBrick + stored * BytesPerBrick + triangles * BytesPerTriangle;
   }
   else
   {
