@@ -117,6 +117,35 @@ TYPED_TEST(HierarchicalFit, SmoothsNoisyDataOnly)
   EXPECT_LT(quiet[1], 0.5 * loud[1]);
 }
 
+TYPED_TEST(HierarchicalFit, TakesNoPartThatItCannotFollowForNoise)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = unitLattice<Dim>(64);
+  constexpr double radius = 0.35;
+  auto input = sphereInput<Dim>(radius, Dim == 2 ? 4000 : 30000);
+  // A cap of two layers that contradict each other: each is two thirds of a spacing away.
+  double sum = 0;
+  for (Eigen::Index k = 0; k < input.Positions.cols(); ++k)
+  {
+    const Point<Dim> p = input.Positions.col(k);
+    if (p[Dim - 1] > 0.5 + 0.8 * radius)
+    {
+      const double shift = (k % 2 == 0 ? 0.66 : -0.66) * lattice.Spacing[0];
+      input.Positions.col(k) += shift * input.Normals.col(k);
+      sum += shift * shift;
+    }
+  }
+  const double rms = std::sqrt(sum / static_cast<double>(input.Positions.cols()));
+  EXPECT_GT(rms, 0.15 * lattice.Spacing[0]) << "much, if all counted alike";
+  const auto result = fitHierarchical(lattice, input, HierarchicalOptions{});
+  EXPECT_EQ(result.SmoothingLength, 0);
+  EXPECT_LT(result.Noise, 0.05 * lattice.Spacing[0]);
+  // The other side is as it was.
+  Point<Dim> below = Point<Dim>::Constant(0.5);
+  below[Dim - 1] -= radius;
+  EXPECT_NEAR(result.Function->value(below), 0, 1e-4);
+}
+
 TYPED_TEST(HierarchicalFit, FillsAHole)
 {
   constexpr int Dim = TypeParam::value;

@@ -101,6 +101,28 @@ TYPED_TEST(SampleChecks, CleanDataHaveNoFaults)
   EXPECT_LT(largestMiss(result), 2e-5);
 }
 
+TYPED_TEST(SampleChecks, SpreadIsTheDeviationOfNormalDistances)
+{
+  constexpr int Dim = TypeParam::value;
+  constexpr double deviation = 0.2;
+  test::Random random(2);
+  Samples<Dim> samples(20000);
+  std::vector<SampleCheck> checks(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k)
+  {
+    samples[k].HasNormal = k % 2 == 0;
+    // A sum of twelve is about normal; of samples with no normal another one, that does not count.
+    double sum = -6;
+    for (int i = 0; i < 12; ++i)
+    {
+      sum += random.uniform(0, 1);
+    }
+    checks[k].Distance = static_cast<float>(samples[k].HasNormal ? deviation * sum : 5);
+  }
+  EXPECT_NEAR(spreadOf(samples, checks), deviation, 0.02 * deviation);
+  EXPECT_EQ(spreadOf(Samples<Dim>{}, {}), 0);
+}
+
 TYPED_TEST(SampleChecks, FindsFlippedNormals)
 {
   constexpr int Dim = TypeParam::value;
