@@ -905,6 +905,21 @@ const ipia::Frame& vtkIPIAImplicitFitter::FittedFrame() const
   return this->State->Current->Frame;
 }
 
+double vtkIPIAImplicitFitter::KnotSpacing() const
+{
+  double spacing = VTK_DOUBLE_MAX;
+  const double* bounds = this->ModelBoundsUsed;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int cells = this->GridSizeUsed[axis] - 3;
+    if (cells > 0)
+    {
+      spacing = std::min(spacing, (bounds[2 * axis + 1] - bounds[2 * axis]) / cells);
+    }
+  }
+  return spacing;
+}
+
 void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

@@ -661,7 +661,8 @@ private:
 
   class Internals;
 
-  // vtkIPIASurfaceReconstruction asks for the function alone and contours it in bricks if it is.
+  // These ask for the function alone; the surface is contoured in bricks if that is.
+  friend class vtkIPIAScanRegistration;
   friend class vtkIPIASurfaceReconstruction;
   void UpdateFunctionOnly();
   bool IsInBricks() const;
@@ -669,6 +670,8 @@ private:
     vtkPolyData* surface, std::vector<vtkIdType>& component) const;
   const ipia::PointCloud& FittedCloud() const;
   const ipia::Frame& FittedFrame() const;
+  /// The smallest of the axes.
+  double KnotSpacing() const;
   void EvaluateAttributes(vtkPolyData* surface);
 
   ipia::FitParameters Parameters() const;

@@ -9,8 +9,11 @@
 #include "IPIATrim.h"
 #include "vtkIPIAImplicitFitter.h"
 #include "vtkIPIAImplicitFunction.h"
+#include "vtkIPIAScanRegistration.h"
 
 #include "vtkCommand.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
@@ -22,7 +25,6 @@
 #include "vtkMath.h"
 #include "vtkMatrix3x3.h"
 #include "vtkObjectFactory.h"
-#include "vtkOutputWindow.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkReverseSense.h"
@@ -37,8 +39,8 @@ vtkStandardNewMacro(vtkIPIASurfaceReconstruction);
 
 namespace
 {
-/// Share of the progress that the fit takes.
-constexpr double ProgressOfFit = 0.7;
+/// Shares of the progress: up to the end of the registration, and of the fit.
+constexpr double ProgressOfRegistration = 0.4, ProgressOfFit = 0.7;
 /// Data farther from a component than this many knot spacings are not its data.
 constexpr double ReachOfData = 3;
 /// Rounding to float shows beyond this share of the knot spacing.
@@ -153,6 +155,7 @@ vtkIPIASurfaceReconstruction::vtkIPIASurfaceReconstruction()
   , TrimDistance(3)
   , HoleSize(0.15)
   , OutputPointsPrecision(DEFAULT_PRECISION)
+  , RegisterScans(true)
   , NumberOfComponentsLeftOut(0)
   , NumberOfPartsTrimmed(0)
 {
@@ -165,6 +168,7 @@ vtkIPIASurfaceReconstruction::vtkIPIASurfaceReconstruction()
     { vtkCommand::ErrorEvent, vtkCommand::WarningEvent, vtkCommand::ProgressEvent })
   {
     this->Fitter->AddObserver(event, this, &vtkIPIASurfaceReconstruction::ForwardEvent);
+    this->Registration->AddObserver(event, this, &vtkIPIASurfaceReconstruction::ForwardEvent);
   }
 }
 
@@ -173,6 +177,11 @@ vtkIPIASurfaceReconstruction::~vtkIPIASurfaceReconstruction() = default;
 vtkIPIAImplicitFitter* vtkIPIASurfaceReconstruction::GetFitter()
 {
   return this->Fitter;
+}
+
+vtkIPIAScanRegistration* vtkIPIASurfaceReconstruction::GetRegistration()
+{
+  return this->Registration;
 }
 
 void vtkIPIASurfaceReconstruction::SetExtraRowsConnection(vtkAlgorithmOutput* output)
@@ -192,7 +201,8 @@ vtkDataArraySelection* vtkIPIASurfaceReconstruction::GetPointDataArraySelection(
 
 vtkMTimeType vtkIPIASurfaceReconstruction::GetMTime()
 {
-  return std::max(this->Superclass::GetMTime(), this->Fitter->GetMTime());
+  return std::max(
+    { this->Superclass::GetMTime(), this->Fitter->GetMTime(), this->Registration->GetMTime() });
 }
 
 int vtkIPIASurfaceReconstruction::FillInputPortInformation(int port, vtkInformation* info)
@@ -200,25 +210,80 @@ int vtkIPIASurfaceReconstruction::FillInputPortInformation(int port, vtkInformat
   return this->Fitter->FillInputPortInformation(port, info);
 }
 
-void vtkIPIASurfaceReconstruction::ForwardEvent(vtkObject*, unsigned long event, void* data)
+void vtkIPIASurfaceReconstruction::ForwardEvent(vtkObject* caller, unsigned long event, void* data)
 {
   if (event == vtkCommand::ProgressEvent)
   {
-    const bool goOn = ipia::reportProgress(this, ProgressOfFit * *static_cast<double*>(data));
-    this->Fitter->SetAbortExecute(goOn ? 0 : 1);
-  }
-  else if (this->HasObserver(event))
-  {
-    this->InvokeEvent(event, data);
-  }
-  else if (event == vtkCommand::ErrorEvent)
-  {
-    vtkOutputWindowDisplayErrorText(static_cast<const char*>(data));
+    const bool isFit = caller == this->Fitter;
+    const double begin = isFit ? this->ProgressBeforeFit : 0;
+    const double end = isFit ? ProgressOfFit : ProgressOfRegistration;
+    const double share = *static_cast<double*>(data);
+    const bool goOn = ipia::reportProgress(this, begin + (end - begin) * share);
+    static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(goOn ? 0 : 1);
   }
   else
   {
-    vtkOutputWindowDisplayWarningText(static_cast<const char*>(data));
+    ipia::forwardMessage(this, event, data);
   }
+}
+
+bool vtkIPIASurfaceReconstruction::IsToRegister(vtkDataObject* points) const
+{
+  return this->RegisterScans && !this->Fitter->GetIncremental() &&
+    vtkCompositeDataSet::SafeDownCast(points);
+}
+
+std::vector<vtkMTimeType> vtkIPIASurfaceReconstruction::IdentityOf(vtkInformationVector** input)
+{
+  ipia::Identity identity;
+  for (int port = 0; port < 2; ++port)
+  {
+    ipia::appendIdentity(vtkDataObject::GetData(input[port]), identity);
+  }
+  vtkDataObject* points = vtkDataObject::GetData(input[0]);
+  const bool registers = this->IsToRegister(points);
+  identity.push_back(registers ? this->Registration->GetMTime() : 0);
+  if (registers)
+  {
+    auto* scans = static_cast<vtkCompositeDataSet*>(points);
+    const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(scans->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      for (int index : { ipia::PointCloud::NormalsIndex, ipia::PointCloud::WeightsIndex })
+      {
+        ipia::appendArrayIdentity(
+          this->GetInputArrayToProcess(index, iterator->GetCurrentDataObject()), identity);
+      }
+    }
+  }
+  return identity;
+}
+
+vtkSmartPointer<vtkDataObject> vtkIPIASurfaceReconstruction::Registered(vtkDataObject* scans)
+{
+  for (int index : { ipia::PointCloud::NormalsIndex, ipia::PointCloud::WeightsIndex })
+  {
+    this->Registration->SetInputArrayToProcess(index, this->GetInputArrayInformation(index));
+  }
+  this->Registration->SetInputDataObject(scans);
+  this->Registration->Update();
+  this->ProgressBeforeFit = ProgressOfRegistration;
+  auto* registered = vtkCompositeDataSet::SafeDownCast(this->Registration->GetOutputDataObject(0));
+  const bool failed = registered->GetNumberOfPoints() == 0 &&
+    static_cast<vtkCompositeDataSet*>(scans)->GetNumberOfPoints() > 0;
+  vtkSmartPointer<vtkDataObject> points = failed ? nullptr : scans;
+  if (this->Registration->GetLargestMotion() > 0)
+  {
+    points.TakeReference(registered->NewInstance());
+    points->ShallowCopy(registered);
+    vtkWarningMacro("The scans were moved, by up to "
+      << this->Registration->GetLargestMotion() << ", until they lay "
+      << this->Registration->GetMisfitAfter() << " apart instead of "
+      << this->Registration->GetMisfitBefore()
+      << " (root mean square). With RegisterScans off they stay where they are.");
+  }
+  registered->Initialize(); // the fitter has what it needs
+  return points;
 }
 
 int vtkIPIASurfaceReconstruction::RequestData(
@@ -233,11 +298,8 @@ int vtkIPIASurfaceReconstruction::RequestData(
                   << " is not a number. Set one.");
     return 1;
   }
-  ipia::Identity identity;
-  for (int port = 0; port < 2; ++port)
-  {
-    ipia::appendIdentity(vtkDataObject::GetData(input[port]), identity);
-  }
+  ipia::Identity identity = this->IdentityOf(input);
+  this->ProgressBeforeFit = 0;
   for (int port = 0; port < 2 && identity != this->InputIdentity; ++port)
   {
     // A copy of its own keeps the fitter out of this filter's pipeline.
@@ -246,6 +308,17 @@ int vtkIPIASurfaceReconstruction::RequestData(
     {
       copy.TakeReference(data->NewInstance());
       copy->ShallowCopy(data);
+    }
+    if (port == 0 && this->IsToRegister(copy))
+    {
+      copy = this->Registered(copy);
+      if (!copy) // refused, or aborted
+      {
+        this->Fitter->DiscardFit();
+        this->InputIdentity.clear();
+        return 1;
+      }
+      identity = this->IdentityOf(input);
     }
     this->Fitter->SetInputDataObject(port, copy);
   }
@@ -308,8 +381,8 @@ int vtkIPIASurfaceReconstruction::RequestData(
 void vtkIPIASurfaceReconstruction::LeaveOutComponents(
   vtkPolyData* surface, const std::vector<vtkIdType>& component)
 {
-  this->NumberOfComponentsLeftOut += ipia::leaveOutComponents(
-    surface, component, this->Fitter->FittedCloud().Positions, ReachOfData * this->KnotSpacing());
+  this->NumberOfComponentsLeftOut += ipia::leaveOutComponents(surface, component,
+    this->Fitter->FittedCloud().Positions, ReachOfData * this->Fitter->KnotSpacing());
 }
 
 void vtkIPIASurfaceReconstruction::Trim(vtkPolyData* surface)
@@ -358,21 +431,6 @@ void vtkIPIASurfaceReconstruction::Trim(vtkPolyData* surface)
   }
 }
 
-double vtkIPIASurfaceReconstruction::KnotSpacing() const
-{
-  double spacing = VTK_DOUBLE_MAX;
-  const double* bounds = this->Fitter->GetModelBoundsUsed();
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int cells = this->Fitter->GetGridSizeUsed()[axis] - 3;
-    if (cells > 0)
-    {
-      spacing = std::min(spacing, (bounds[2 * axis + 1] - bounds[2 * axis]) / cells);
-    }
-  }
-  return spacing;
-}
-
 int vtkIPIASurfaceReconstruction::PointType() const
 {
   const double* bounds = this->Fitter->GetModelBoundsUsed();
@@ -383,7 +441,7 @@ int vtkIPIASurfaceReconstruction::PointType() const
   }
   const bool wide = this->OutputPointsPrecision == DOUBLE_PRECISION ||
     (this->OutputPointsPrecision == DEFAULT_PRECISION &&
-      farthest * FloatRounding > VisibleRounding * this->KnotSpacing());
+      farthest * FloatRounding > VisibleRounding * this->Fitter->KnotSpacing());
   return wide ? VTK_DOUBLE : VTK_FLOAT;
 }
 
@@ -447,8 +505,11 @@ void vtkIPIASurfaceReconstruction::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "TrimDistance: " << this->TrimDistance << "\n";
   os << indent << "HoleSize: " << this->HoleSize << "\n";
   os << indent << "OutputPointsPrecision: " << this->OutputPointsPrecision << "\n";
+  os << indent << "RegisterScans: " << this->RegisterScans << "\n";
   os << indent << "NumberOfComponentsLeftOut: " << this->NumberOfComponentsLeftOut << "\n";
   os << indent << "NumberOfPartsTrimmed: " << this->NumberOfPartsTrimmed << "\n";
   os << indent << "Fitter:\n";
   this->Fitter->PrintSelf(os, indent.GetNextIndent());
+  os << indent << "Registration:\n";
+  this->Registration->PrintSelf(os, indent.GetNextIndent());
 }

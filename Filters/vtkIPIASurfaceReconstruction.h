@@ -23,6 +23,8 @@
  * - point normals from the exact gradient of f, towards f > 0;
  * - the point arrays of the input (colours, scalars, vectors) at its vertices, as smooth functions
  *   v(x) fitted as vtkIPIAImplicitFitter tells, with the active attributes that they were;
+ * - registration: the blocks of a composite input are scans, and are moved together where they lie
+ *   apart, see RegisterScans;
  * - the component filter: components that hardly any data point is nearest to are left out;
  * - trimming: where data end the surface ends, see "Open surfaces";
  * - points in double precision where single would show, such as in map coordinates.
@@ -47,7 +49,8 @@
  * on GetFitter(). Refusals and warnings are the
  * fitter's, reported by this filter; the output is empty after a refusal or an abort.
  *
- * @sa vtkIPIAImplicitFitter vtkIPIAImplicitFunction vtkFlyingEdges3D vtkSurfaceReconstructionFilter
+ * @sa vtkIPIAImplicitFitter vtkIPIAImplicitFunction vtkIPIAScanRegistration vtkFlyingEdges3D
+ * vtkSurfaceReconstructionFilter
  */
 #ifndef vtkIPIASurfaceReconstruction_h
 #define vtkIPIASurfaceReconstruction_h
@@ -55,11 +58,13 @@
 #include "vtkFiltersIPIAModule.h" // for the export macro
 #include "vtkNew.h"               // for vtkNew
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h" // for vtkSmartPointer
 
 #include <vector> // for std::vector
 
 class vtkDataArraySelection;
 class vtkIPIAImplicitFitter;
+class vtkIPIAScanRegistration;
 class vtkImageData;
 
 class VTKFILTERSIPIA_EXPORT vtkIPIASurfaceReconstruction : public vtkPolyDataAlgorithm
@@ -136,6 +141,23 @@ public:
   vtkGetMacro(OutputPointsPrecision, int);
   ///@}
 
+  ///@{
+  /**
+   * Register the scans of a composite input with vtkIPIAScanRegistration before the fit: blocks
+   * that lie apart where they overlap are moved together, with a warning that tells how far, if
+   * small rigid motions take away half of what separates them or more. Otherwise, and with the
+   * fitter's Incremental, whose earlier points must stay, they are used as they are. Default on.
+   */
+  vtkSetMacro(RegisterScans, bool);
+  vtkGetMacro(RegisterScans, bool);
+  vtkBooleanMacro(RegisterScans, bool);
+  ///@}
+
+  /**
+   * What registers the scans: its parameters, and after Update() its results.
+   */
+  vtkIPIAScanRegistration* GetRegistration();
+
   /**
    * Number of components that the component filter left out in the last update.
    */
@@ -146,7 +168,7 @@ public:
    */
   vtkGetMacro(NumberOfPartsTrimmed, int);
 
-  /// Covers the fitter's parameters.
+  /// Covers the parameters of fitter and registration.
   vtkMTimeType GetMTime() override;
 
 protected:
@@ -162,6 +184,7 @@ protected:
   double TrimDistance;
   double HoleSize;
   int OutputPointsPrecision;
+  bool RegisterScans;
   int NumberOfComponentsLeftOut;
   int NumberOfPartsTrimmed;
 
@@ -170,7 +193,9 @@ private:
   void operator=(const vtkIPIASurfaceReconstruction&) = delete;
 
   void ForwardEvent(vtkObject* caller, unsigned long event, void* data);
-  double KnotSpacing() const;
+  bool IsToRegister(vtkDataObject* points) const;
+  std::vector<vtkMTimeType> IdentityOf(vtkInformationVector** input);
+  vtkSmartPointer<vtkDataObject> Registered(vtkDataObject* scans);
   int PointType() const;
   void ContourImage(vtkPolyData* surface);
   void MoveOntoZeroSet(vtkPolyData* surface, vtkImageData* sampled);
@@ -178,7 +203,9 @@ private:
   void Trim(vtkPolyData* surface);
 
   vtkNew<vtkIPIAImplicitFitter> Fitter;
+  vtkNew<vtkIPIAScanRegistration> Registration;
   std::vector<vtkMTimeType> InputIdentity; // of what the fitter has copies of
+  double ProgressBeforeFit = 0;
 };
 
 #endif

@@ -3,7 +3,7 @@ foreach (name IN ITEMS
     AttributeFit AttributeSpline AutomaticFairing AutomaticLattice BSplineBasis BrickLattice BrickOperator BrickSpline
     CollocationOperator ConstraintRows FairingIteration FairingSystem FarField HierarchicalFit HierarchyLevel
     ImplicitFit ImplicitSpline IncrementalFit KnotRefinement LeastSquaresSolver LonePoints Oscillation Parametrization
-    PointSamples RationalOperator RationalSolver RowBatches SampleChecks SampleJudge SplineSampling TensorSpline
+    PointSamples RationalOperator RationalSolver RowBatches SampleChecks SampleJudge ScanMotions SplineSampling TensorSpline
     TouchedCoefficients)
   list(APPEND ipia_core_sources "${CMAKE_CURRENT_LIST_DIR}/${name}.cxx")
   list(APPEND ipia_core_headers "${CMAKE_CURRENT_LIST_DIR}/${name}.h")

@@ -87,14 +87,18 @@ class TestTasks(unittest.TestCase):
         self.assertLess(median, 0.03)
 
     def check_statue(self):
-        self.assertGreaterEqual(self.number("Padding 0.05: parts trimmed"), 1)
-        self.assertGreater(self.number("Padding 0.05: open edges"), 0)
-        self.assertEqual(self.figures["Padding 0.05: components"], "1")
+        before, after = self.numbers("scans apart, before and after, mm")
+        self.assertLess(after, 0.15 * before)
+        mean = {}
+        for name in ("as given: ", "registered: ", "Padding 0.15: "):
+            self.assertEqual(self.figures[name + "components"], "1")
+            mean[name], _ = self.numbers(name + "from the statue, mean and 99 %, mm")[-2:]
+        self.assertLess(mean["registered: "], 0.6 * mean["as given: "])
+        self.assertGreaterEqual(self.number("registered: parts trimmed"), 1)
+        self.assertGreater(self.number("registered: open edges"), 0)
         self.is_closed("Padding 0.15: ")
         self.assertEqual(self.figures["Padding 0.15: parts trimmed"], "0")
-        for padding in ("0.05", "0.15"):
-            mean, _ = self.numbers(f"Padding {padding}: from the statue, mean and 99 %, mm")[-2:]
-            self.assertLess(mean, 1.8)  # a thousandth of its height
+        self.assertLess(mean["Padding 0.15: "], 1.8)  # a thousandth of its height
 
     def check_part(self):
         cut = {}

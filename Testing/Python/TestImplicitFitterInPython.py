@@ -4,10 +4,11 @@ import numpy as np
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.test import Testing
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkConnectivityFilter, vtkFlyingEdges3D
 
-from ipia import vtkIPIAImplicitFitter, vtkIPIAImplicitFunction, vtkIPIASurfaceReconstruction
+from ipia import (vtkIPIAImplicitFitter, vtkIPIAImplicitFunction, vtkIPIAScanRegistration,
+                  vtkIPIASurfaceReconstruction)
 from python_testing import classic_fitter, cloud
 
 
@@ -53,6 +54,19 @@ class TestImplicitFitterInPython(Testing.vtkTest):
         self.assertGreater((surface.Points * surface.PointData["Normals"]).sum(axis=1).min(), 0.99)
         self.assertIsInstance(reconstruction.GetFitter(), vtkIPIAImplicitFitter)
         self.assertGreater(reconstruction.GetFitter().GetNumberOfLevelsUsed(), 0)
+
+    def test_scans_are_moved_together(self):
+        scans = vtkMultiBlockDataSet()
+        for k, shift in enumerate((-0.01, 0.01)):
+            scans.SetBlock(k, cloud(sphere(2000 + k) + (shift, 0, 0), sphere(2000 + k)))
+        registration = vtkIPIAScanRegistration()
+        registration.SetInputDataObject(scans)
+        registration.Update()
+        self.assertLess(registration.GetMisfitAfter(), 0.1 * registration.GetMisfitBefore())
+        for k, shift in enumerate((-0.01, 0.01)):
+            field = dsa.WrapDataObject(registration.GetOutputDataObject(0).GetBlock(k)).FieldData
+            matrix = np.array(field["RegistrationMatrix"]).reshape(4, 4)
+            self.assertLess(np.abs(matrix[:3, 3] - (-shift, 0, 0)).max(), 5e-4)
 
     def test_rational_spline(self):
         fitter = classic_fitter(cloud(sphere(), sphere()))

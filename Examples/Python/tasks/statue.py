@@ -5,7 +5,8 @@
     python3 statue.py --data build/data
 
 A scanner is simulated: rays from ten places to a mesh (the armadillo of Debian's package
-libcgal-demo, as a statue of 1.8 m), with noise. So the true surface is known.
+libcgal-demo, as a statue of 1.8 m), with noise, and each scan a little out of place. So the true
+surface is known.
 """
 import sys
 
@@ -23,6 +24,7 @@ HEIGHT = 1.8  # m
 AWAY = 3.0  # m from the statue's middle to the scanner
 STEPS = 170  # rays across and up
 NOISE = 0.0005  # m along the ray, standard deviation
+TURNED, SHIFTED = 0.15, 0.002  # degrees, m: how far scans are out of place, standard deviations
 GRAZING = 0.15  # cosine of the angle below which nothing comes back
 SEED = 1
 COLOURS = ((0.84, 0.37, 0.30), (0.27, 0.46, 0.71), (0.45, 0.68, 0.38), (0.93, 0.68, 0.29),
@@ -85,7 +87,22 @@ def scan(statue, locator, place, random):
             if -face_normals[cell.get()] @ ray > GRAZING:
                 found.append(hit + random.normal(0, NOISE) * ray)
     points = np.array(found)
-    return polydata(points, estimated_normals(points, place))
+    return out_of_place(polydata(points, estimated_normals(points, place)), random)
+
+
+def out_of_place(scan_in_place, random):
+    """A scan as its registration left it: turned about the statue's middle, and shifted."""
+    motion = vtk.vtkTransform()
+    motion.Translate(*random.normal(0, SHIFTED, 3))
+    motion.Translate(0, 0, HEIGHT / 2)
+    for turn in (motion.RotateX, motion.RotateY, motion.RotateZ):
+        turn(random.normal(0, TURNED))
+    motion.Translate(0, 0, -HEIGHT / 2)
+    moved = vtk.vtkTransformPolyDataFilter()
+    moved.SetTransform(motion)
+    moved.SetInputData(scan_in_place)
+    moved.Update()
+    return moved.GetOutput()
 
 
 def share_near(points, others, distance):
@@ -118,38 +135,45 @@ def main():
 
     reconstruction = vtkIPIASurfaceReconstruction()
     reconstruction.SetInputDataObject(scans)
-    made = {}
-    for padding in (reconstruction.GetFitter().GetPadding(), 0.15):
+    made = []
+    for name, register, padding in (("as given", False, 0.05), ("registered", True, 0.05),
+                                    ("Padding 0.15", True, 0.15)):
+        reconstruction.SetRegisterScans(register)
         reconstruction.GetFitter().SetPadding(padding)
         reconstruction.Update()
         surface = vtk.vtkPolyData()
         surface.DeepCopy(reconstruction.GetOutput())
-        made[padding] = surface
-        name = f"Padding {padding:g}: "
-        show(name + "components", number_of_components(surface))
-        show(name + "parts trimmed", reconstruction.GetNumberOfPartsTrimmed())
-        show(name + "components left out", reconstruction.GetNumberOfComponentsLeftOut())
-        show(name + "open edges", number_of_open_edges(surface))
-        show(name + "noise found, mm",
+        made.append(surface)
+        if register and padding == 0.05:
+            registration = reconstruction.GetRegistration()
+            show("scans apart, before and after, mm",
+                 *(f"{1000 * v:.2f}" for v in (registration.GetMisfitBefore(),
+                                               registration.GetMisfitAfter())))
+        show(name + ": components", number_of_components(surface))
+        show(name + ": parts trimmed", reconstruction.GetNumberOfPartsTrimmed())
+        show(name + ": components left out", reconstruction.GetNumberOfComponentsLeftOut())
+        show(name + ": open edges", number_of_open_edges(surface))
+        show(name + ": noise found, mm",
              f"{1000 * reconstruction.GetFitter().GetNoiseFound():.2f}")
         apart = 1000 * distances(corners, surface)
-        show(name + "from the statue, mean and 99 %, mm",
+        show(name + ": from the statue, mean and 99 %, mm",
              *(f"{v:.2f}" for v in (apart.mean(), np.percentile(apart, 99))))
     write(surface, given.output / "statue.vtp")
     if not given.no_picture:
         front = View(direction=(-0.25, 1, 0.12), up=(0, 0, 1))
         below = View(direction=(-0.3, 1, -0.9), up=(0, 0, 1))
-        sheet = Sheet(1, 4, (250, 330), SCALE)
+        sheet = Sheet(1, 5, (220, 300), SCALE)
         place = np.array(front.direction)
         facing = [polydata(points_of(block)[normals @ place > 0]) for block in blocks
                   for normals in
                   [vtk_to_numpy(block.GetPointData().GetNormals())]]
         sheet.tile(0, 0, "ten scans", [dots(part, colour, 1.6) for part, colour in
                                        zip(facing, COLOURS)], front)
-        low, high = made.values()
-        light(sheet.tile(0, 1, "the surface", [shaded(low)], front))
-        light(sheet.tile(0, 2, "from below, nothing set", [shaded(low)], below))
-        light(sheet.tile(0, 3, "Padding 0.15", [shaded(high)], below))
+        given_places, low, high = made
+        light(sheet.tile(0, 1, "RegisterScans off", [shaded(given_places)], front))
+        light(sheet.tile(0, 2, "nothing set", [shaded(low)], front))
+        light(sheet.tile(0, 3, "from below", [shaded(low)], below))
+        light(sheet.tile(0, 4, "Padding 0.15", [shaded(high)], below))
         sheet.write(given.output / "task-statue.png")
     return 0
 
