@@ -106,6 +106,7 @@ struct RowKernel
     constexpr bool gather = Kind != Sweep::Diagonal && Kind != Sweep::Density;
     constexpr bool scatter = Kind != Sweep::Value && Kind != Sweep::ValueAndSlope;
     constexpr int sliceSize = WindowWidth * WindowWidth;
+    static_assert(WindowWidth == 8, "as the registers load and add");
     alignas(64) float in[WindowSize<Dim>];
     alignas(64) float out[WindowSize<Dim>];
     if (gather)
@@ -144,7 +145,7 @@ struct RowKernel
         add[k] = Wide::zero();
         if (gather)
         {
-          c[k] = Wide::load(in + corner + k * sliceSize, WindowWidth);
+          c[k] = Wide::load(in + corner + k * sliceSize);
         }
       }
       for (; row != arguments.End && row->Cell == cell; ++row)
@@ -212,14 +213,7 @@ struct RowKernel
       {
         for (int k = 0; k < slices; ++k)
         {
-          float* at = out + corner + k * sliceSize;
-          for (int j = 0; j < Order; ++j)
-          {
-            Float4 total;
-            std::memcpy(&total, at + j * WindowWidth, sizeof(total));
-            total += add[k].row(j);
-            std::memcpy(at + j * WindowWidth, &total, sizeof(total));
-          }
+          add[k].addTo(out + corner + k * sliceSize);
         }
       }
     }

@@ -25,18 +25,29 @@ struct OneRegister
 
   static IPIA_INLINE OneRegister zero() { return { Float16{} }; }
 
-  /// Row j at from + j * stride.
-  static IPIA_INLINE OneRegister load(const float* from, int stride)
+  /// Row j at from + 8 j. Reads up to from + 31.
+  static IPIA_INLINE OneRegister load(const float* from)
   {
-    Float4 r[4];
-    for (int j = 0; j < 4; ++j)
-    {
-      std::memcpy(&r[j], from + j * stride, sizeof(Float4));
-    }
-    const Float8 low = __builtin_shufflevector(r[0], r[1], 0, 1, 2, 3, 4, 5, 6, 7);
-    const Float8 high = __builtin_shufflevector(r[2], r[3], 0, 1, 2, 3, 4, 5, 6, 7);
+    Float16 low, high;
+    std::memcpy(&low, from, sizeof(low));
+    std::memcpy(&high, from + 16, sizeof(high));
     return { __builtin_shufflevector(
-      low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) };
+      low, high, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27) };
+  }
+
+  /// Adds row j to what is at to + 8 j. Touches, but leaves, the rest up to to + 31.
+  IPIA_INLINE void addTo(float* to) const
+  {
+    Float16 low, high;
+    std::memcpy(&low, to, sizeof(low));
+    std::memcpy(&high, to + 16, sizeof(high));
+    const Float16 none{};
+    low += __builtin_shufflevector(
+      this->V, none, 0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
+    high += __builtin_shufflevector(
+      this->V, none, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15, 20, 21, 22, 23);
+    std::memcpy(to, &low, sizeof(low));
+    std::memcpy(to + 16, &high, sizeof(high));
   }
 
   IPIA_INLINE Float4 row(int j) const
@@ -131,17 +142,28 @@ struct TwoRegisters
 
   static IPIA_INLINE TwoRegisters zero() { return { { Float8{}, Float8{} } }; }
 
-  static IPIA_INLINE TwoRegisters load(const float* from, int stride)
+  static IPIA_INLINE TwoRegisters load(const float* from)
   {
     TwoRegisters loaded;
     for (int half = 0; half < 2; ++half)
     {
       Float4 a, b;
-      std::memcpy(&a, from + 2 * half * stride, sizeof(Float4));
-      std::memcpy(&b, from + (2 * half + 1) * stride, sizeof(Float4));
+      std::memcpy(&a, from + 16 * half, sizeof(Float4));
+      std::memcpy(&b, from + 16 * half + 8, sizeof(Float4));
       loaded.V[half] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
     }
     return loaded;
+  }
+
+  IPIA_INLINE void addTo(float* to) const
+  {
+    for (int j = 0; j < 4; ++j)
+    {
+      Float4 total;
+      std::memcpy(&total, to + 8 * j, sizeof(total));
+      total += this->row(j);
+      std::memcpy(to + 8 * j, &total, sizeof(total));
+    }
   }
 
   IPIA_INLINE Float4 row(int j) const
