@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkIPIAImplicitFitter.h"
 
-#include "Core/Parallel.h"
 #include "IPIAAttributes.h"
 #include "IPIABrickContour.h"
+#include "IPIAFitOutputs.h"
 #include "IPIAFitSolution.h"
 #include "IPIAIdentity.h"
 #include "IPIAProgress.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFunction.h"
 
-#include "vtkCellArray.h"
 #include "vtkCommand.h"
 #include "vtkDataArraySelection.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkFloatArray.h"
-#include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -25,10 +22,8 @@
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 
@@ -381,29 +376,6 @@ void addResult(vtkFieldData* field, const char* name, double value)
   array->InsertNextValue(value);
   field->AddArray(array);
 }
-
-/// Samples one quantity of the fit into component c of an array over an extent.
-template <int Dim, typename ArrayType>
-bool sampleInto(ArrayType* array, int component, const ipia::ImplicitSpline<Dim>& function,
-  const ipia::AxisPositions<Dim>& positions, int derivativeAxis,
-  const ipia::ProgressCallback& progress)
-{
-  using Scalar = typename ArrayType::ValueType;
-  const int components = array->GetNumberOfComponents();
-  if (components == 1)
-  {
-    return function.sample(positions, array->GetPointer(0), 0, derivativeAxis, progress);
-  }
-  std::vector<Scalar> plane(static_cast<std::size_t>(array->GetNumberOfTuples()));
-  const bool done = function.sample(positions, plane.data(), 0, derivativeAxis, progress);
-  Scalar* values = array->GetPointer(0);
-  for (std::size_t i = 0; i < plane.size(); ++i)
-  {
-    values[i * static_cast<std::size_t>(components) + static_cast<std::size_t>(component)] =
-      plane[i];
-  }
-  return done;
-}
 }
 
 void vtkIPIAImplicitFitter::ResetResults()
@@ -615,156 +587,21 @@ void vtkIPIAImplicitFitter::DiscardFit()
   this->ResetResults();
 }
 
-template <int Dim, typename ArrayType>
 bool vtkIPIAImplicitFitter::SampleImage(vtkImageData* image)
 {
-  const ipia::FitProblem& problem = *this->State->Current;
-  const ipia::FitSolution<Dim>& fit = *this->State->Slot<Dim>();
-  ipia::AxisPositions<Dim> positions;
-  for (int a = 0; a < Dim; ++a)
-  {
-    const int axis = fit.Place.Axis[static_cast<std::size_t>(a)];
-    const int* extent = image->GetExtent();
-    for (int i = extent[2 * axis]; i <= extent[2 * axis + 1]; ++i)
-    {
-      // As vtkImageData places its points, so that samples equal the function at those.
-      const double world = problem.Origin[axis] + i * problem.SampleSpacing[axis];
-      positions[static_cast<std::size_t>(a)].push_back(world - problem.Origin[axis]);
-    }
-  }
-
+  ipia::ImageContents contents;
+  contents.ScalarType = this->OutputScalarType;
+  contents.Gradient = this->GenerateGradient;
+  contents.Support = this->GenerateSupport;
   // Where nothing but the function is wanted, point arrays are evaluated where they are needed.
-  const double ofArrays = this->FunctionOnly ? 0 : this->State->Attributes.numberOfComponents();
-  const double quantities =
-    1 + (this->GenerateGradient ? Dim : 0) + (this->GenerateSupport ? 1 : 0) + ofArrays;
-  int finished = 0;
-  const auto progress = [&](double share)
-  {
-    return ipia::reportProgress(
-      this, ProgressOfFit + (1 - ProgressOfFit) * (finished + share) / quantities);
-  };
-  const auto newArray = [image](const char* name, int components)
-  {
-    auto array = vtkSmartPointer<ArrayType>::New();
-    array->SetName(name);
-    array->SetNumberOfComponents(components);
-    array->SetNumberOfTuples(image->GetNumberOfPoints());
-    return array;
-  };
-
-  // Sampling reports from one thread, which may find nothing left to do; so each end is reported.
-  const auto finish = [&]
-  {
-    ++finished;
-    return progress(0);
-  };
-
-  auto f = newArray("f", 1);
-  if (!sampleInto<Dim>(f.Get(), 0, *fit.Function, positions, -1, progress) || !finish())
-  {
-    return false;
-  }
-  image->GetPointData()->SetScalars(f);
-  if (this->GenerateGradient)
-  {
-    auto gradient = newArray("Gradient", 3);
-    gradient->Fill(0);
-    for (int a = 0; a < Dim; ++a)
-    {
-      if (!sampleInto<Dim>(gradient.Get(), fit.Place.Axis[static_cast<std::size_t>(a)],
-            *fit.Function, positions, a, progress) ||
-        !finish())
-      {
-        return false;
-      }
-    }
-    ipia::turnVectors(fit.Place.Turn, gradient);
-    image->GetPointData()->AddArray(gradient);
-  }
-  if (this->GenerateSupport)
-  {
-    auto support = newArray("Support", 1);
-    const ipia::ImplicitSpline<Dim> density(fit.Function->lattice(), fit.Support);
-    if (!sampleInto<Dim>(support.Get(), 0, density, positions, -1, progress) || !finish())
-    {
-      return false;
-    }
-    image->GetPointData()->AddArray(support);
-  }
-  if (ofArrays > 0)
-  {
-    const bool done =
-      this->State->Attributes.sample<Dim>(positions, image->GetPointData(), progress);
-    this->WarnOfAttributes();
-    return done;
-  }
-  return true;
-}
-
-void vtkIPIAImplicitFitter::WriteFittedPoints(vtkPolyData* output)
-{
-  const ipia::PointCloud& cloud = this->State->Current->Cloud;
-  const auto n = static_cast<vtkIdType>(cloud.Ids.size());
-  vtkNew<vtkIdList> from, to;
-  from->SetNumberOfIds(n);
-  to->SetNumberOfIds(n);
-  vtkNew<vtkPoints> points;
-  points->SetDataType(cloud.Source->GetPoints()->GetDataType());
-  points->SetNumberOfPoints(n);
-  vtkNew<vtkDoubleArray> residual, distance, agreement;
-  residual->SetName("Residual");
-  distance->SetName("Distance");
-  agreement->SetName("NormalAgreement");
-  residual->SetNumberOfTuples(n);
-  distance->SetNumberOfTuples(n);
-  agreement->SetNumberOfTuples(n);
-  vtkNew<vtkUnsignedCharArray> outlier;
-  outlier->SetName("Outlier");
-  outlier->SetNumberOfTuples(n);
-  outlier->Fill(0);
-  this->State->WithFit(
-    [&outlier](const auto& fit)
-    {
-      for (const std::int64_t k : fit.Outliers)
-      {
-        outlier->SetValue(k, 1);
-      }
-    });
-  for (vtkIdType i = 0; i < n; ++i)
-  {
-    const auto k = static_cast<std::size_t>(i);
-    from->SetId(i, cloud.Ids[k]);
-    to->SetId(i, i);
-    points->SetPoint(i, cloud.Source->GetPoint(cloud.Ids[k]));
-  }
-  ipia::parallelChunks(n, ipia::resolveThreads(0),
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      for (std::int64_t i = begin; i < end; ++i)
-      {
-        double g[3];
-        const double f = this->State->Function->EvaluateFunctionAndGradient(
-          cloud.Positions[static_cast<std::size_t>(i)].data(), g);
-        const double slope = vtkMath::Norm(g);
-        residual->SetValue(i, f);
-        // Where f is flat there is no distance to tell; f itself is the best guess.
-        distance->SetValue(i, slope > 0 ? f / slope : f);
-        const double along = vtkMath::Dot(cloud.Normals[static_cast<std::size_t>(i)].data(), g);
-        agreement->SetValue(i, slope > 0 ? along / slope : 0.0);
-      }
-    });
-  output->SetPoints(points);
-  output->GetPointData()->CopyAllOn();
-  output->GetPointData()->CopyAllocate(cloud.Source->GetPointData(), n);
-  output->GetPointData()->SetNumberOfTuples(n);
-  output->GetPointData()->CopyData(cloud.Source->GetPointData(), from, to);
-  output->GetPointData()->AddArray(residual);
-  output->GetPointData()->AddArray(distance);
-  output->GetPointData()->AddArray(agreement);
-  output->GetPointData()->AddArray(outlier);
-  vtkNew<vtkCellArray> vertices;
-  vertices->InsertNextCell(to);
-  output->SetVerts(vertices);
+  contents.Arrays = this->FunctionOnly ? nullptr : &this->State->Attributes;
+  const auto progress = [this](double share)
+  { return ipia::reportProgress(this, ProgressOfFit + (1 - ProgressOfFit) * share); };
+  bool done = false;
+  this->State->WithFit([&](const auto& fit)
+    { done = ipia::sampleFit(*this->State->Current, fit, contents, progress, image); });
+  this->WarnOfAttributes();
+  return done;
 }
 
 void vtkIPIAImplicitFitter::WriteResults(vtkFieldData* field) const
@@ -858,18 +695,14 @@ int vtkIPIAImplicitFitter::RequestData(
   image->SetExtent(extent);
   ipia::placeImage(problem.Frame, problem.Origin, image);
   image->SetSpacing(problem.SampleSpacing);
-  const bool planar = problem.Dimension == 2, wide = this->OutputScalarType == VTK_DOUBLE;
-  const bool sampled = planar ? (wide ? this->SampleImage<2, vtkDoubleArray>(image)
-                                      : this->SampleImage<2, vtkFloatArray>(image))
-                              : (wide ? this->SampleImage<3, vtkDoubleArray>(image)
-                                      : this->SampleImage<3, vtkFloatArray>(image));
-  if (!sampled)
+  if (!this->SampleImage(image))
   {
     clear();
     return 1;
   }
   this->WriteResults(image->GetFieldData());
-  this->WriteFittedPoints(points);
+  this->State->WithFit([&](const auto& fit)
+    { ipia::writeFittedPoints(problem.Cloud, fit.Outliers, this->State->Function, points); });
   lattice->ShallowCopy(this->State->ControlLattice);
   ipia::reportProgress(this, 1);
   return 1;

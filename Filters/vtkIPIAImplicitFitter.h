@@ -684,9 +684,7 @@ private:
   void WarnOfAttributes();
   void DiscardFit();
   void ResetResults();
-  template <int Dim, typename ArrayType>
   bool SampleImage(vtkImageData* image);
-  void WriteFittedPoints(vtkPolyData* output);
   void WriteResults(vtkFieldData* field) const;
 
   std::unique_ptr<Internals> State;
