@@ -39,6 +39,8 @@ constexpr double ReachInSpacings = 3, CubeInSpacings = 4;
 constexpr double LeastAgreement = 0.5;
 /// Motions that would take away less than this share of the misfit are not made.
 constexpr double LeastGain = 0.01;
+/// Scans no farther apart than this share of a knot spacing agree.
+constexpr double Negligible = 1e-3;
 /// Points that cannot be used.
 constexpr int NoScan = -1;
 
@@ -196,7 +198,8 @@ bool vtkIPIAScanRegistration::Register(ipia::ScanPoses& scans)
     }
     // The first motions need not reach what is required, but come half way.
     const double leastGain = isFirst ? this->RequiredReduction / 2 : 0.0;
-    if (!(motions.Misfit - motions.Predicted > std::max(leastGain, LeastGain) * motions.Misfit) ||
+    if ((isFirst && motions.Misfit <= Negligible * fitter->KnotSpacing()) ||
+      !(motions.Misfit - motions.Predicted > std::max(leastGain, LeastGain) * motions.Misfit) ||
       this->NumberOfIterationsUsed == this->MaximumNumberOfIterations)
     {
       break;

@@ -35,8 +35,9 @@
  * remains.
  *
  * ### Scans that agree stay where they are
- * All stay, bit for bit, unless the misfit falls by RequiredReduction: data that are registered as
- * well as rigid motions can do are not touched. That takes one fit.
+ * All stay, bit for bit, unless the misfit is more than a thousandth of a knot spacing and falls by
+ * RequiredReduction: data that are registered as well as rigid motions can do are not touched. That
+ * takes one fit.
  *
  * This is for scans that are nearly in place, off by less than about two knot spacings (1 % of the
  * diagonal); vtkIterativeClosestPointTransform or vtkLandmarkTransform bring them there.

@@ -250,6 +250,14 @@ void TestStay(Checks& checks)
   }
   CheckUntouched(checks, Registered(tiles), tiles, "tiles");
 
+  // A scan of one point hardly says that it is out of place.
+  vtkNew<vtkMultiBlockDataSet> withPoint;
+  ipiatest::OrientedPoints point;
+  point.Add({ 0, 0, 0.6 }, { 0, 0, 1 });
+  withPoint->SetBlock(0, ScanOf(0, 4000));
+  withPoint->SetBlock(1, ipiatest::ToPolyData(point));
+  CheckUntouched(checks, Registered(withPoint), withPoint, "a scan and one point");
+
   auto apart = ScansOf(1);
   vtkNew<vtkIPIAScanRegistration> never;
   never->SetRequiredReduction(1);
