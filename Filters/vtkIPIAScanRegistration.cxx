@@ -92,19 +92,17 @@ int vtkIPIAScanRegistration::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkIPIAScanRegistration::ForwardEvent(vtkObject* caller, unsigned long event, void* data)
 {
-  if (event == vtkCommand::ErrorEvent)
+  if (event == vtkCommand::ProgressEvent)
+  {
+    // Every iteration takes half of what is left.
+    const double left = std::pow(0.5, this->NumberOfIterationsUsed);
+    const bool goOn = ipia::reportProgress(this, 1 - left * (1 - *static_cast<double*>(data) / 2));
+    static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(goOn ? 0 : 1);
+  }
+  else if (event == vtkCommand::ErrorEvent) // warnings are for those who fit the result
   {
     ipia::forwardMessage(this, event, data);
   }
-  // Warnings are for those who fit the result.
-  if (event != vtkCommand::ProgressEvent)
-  {
-    return;
-  }
-  // Every iteration takes half of what is left.
-  const double left = std::pow(0.5, this->NumberOfIterationsUsed);
-  const bool goOn = ipia::reportProgress(this, 1 - left * (1 - *static_cast<double*>(data) / 2));
-  static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(goOn ? 0 : 1);
 }
 
 int vtkIPIAScanRegistration::RequestData(
