@@ -16,6 +16,8 @@
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
+
 namespace ipia
 {
 namespace
@@ -191,6 +193,14 @@ void writeFittedPoints(const PointCloud& cloud, const std::vector<std::int64_t>&
   output->GetPointData()->AddArray(distance);
   output->GetPointData()->AddArray(agreement);
   output->GetPointData()->AddArray(outlier);
+  if (!cloud.Feathering.empty())
+  {
+    vtkNew<vtkDoubleArray> feathering;
+    feathering->SetName("Feathering");
+    feathering->SetNumberOfTuples(n);
+    std::copy(cloud.Feathering.begin(), cloud.Feathering.end(), feathering->GetPointer(0));
+    output->GetPointData()->AddArray(feathering);
+  }
   vtkNew<vtkCellArray> vertices;
   vertices->InsertNextCell(to);
   output->SetVerts(vertices);

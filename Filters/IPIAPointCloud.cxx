@@ -3,6 +3,7 @@
 
 #include "Core/Parallel.h"
 #include "IPIARowWeights.h"
+#include "IPIAScanFeathering.h"
 #include "IPIAText.h"
 
 #include "vtkAlgorithm.h"
@@ -227,6 +228,10 @@ void PointCloud::gather(const ArrayChooser& choose, const ArrayNamer& nameOf, vt
   {
     found.AnyWeight = weighByLength(normals, this->Ids.data(), this->Ids.size(), this->Weights);
   }
+  if (this->FeatherScans)
+  {
+    this->feather();
+  }
   if (this->Ids.empty())
   {
     this->Refusal =
@@ -330,6 +335,20 @@ PointCloud::Found PointCloud::takePoints(
   return found;
 }
 
+void PointCloud::feather()
+{
+  this->Feathering = featherFactors(*this);
+  if (this->Weights.empty())
+  {
+    this->Weights = this->Feathering;
+    return;
+  }
+  for (std::size_t k = 0; k < this->Feathering.size(); ++k)
+  {
+    this->Weights[k] *= this->Feathering[k];
+  }
+}
+
 void PointCloud::gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraRows)
 {
   const vtkIdType n = extraRows->GetNumberOfPoints();
@@ -373,7 +392,8 @@ void PointCloud::keepIf(const std::function<bool(std::size_t)>& stays)
       this->Positions[kept] = this->Positions[k];
       this->Normals[kept] = this->Normals[k];
       this->Ids[kept] = this->Ids[k];
-      for (std::vector<double>* scalars : { &this->Weights, &this->LocalFairing })
+      for (std::vector<double>* scalars :
+        { &this->Weights, &this->LocalFairing, &this->Feathering })
       {
         if (!scalars->empty())
         {
@@ -388,6 +408,7 @@ void PointCloud::keepIf(const std::function<bool(std::size_t)>& stays)
   this->Ids.resize(kept);
   this->Weights.resize(this->Weights.empty() ? 0 : kept);
   this->LocalFairing.resize(this->LocalFairing.empty() ? 0 : kept);
+  this->Feathering.resize(this->Feathering.empty() ? 0 : kept);
 }
 
 std::unique_ptr<PointCloud> withoutPoints(

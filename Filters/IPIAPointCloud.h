@@ -59,6 +59,9 @@ public:
   /// Whether the lengths of normals count as weights, on gather().
   bool UseNormalLengths = false;
 
+  /// Whether blocks are scans whose borders count less, on gather().
+  bool FeatherScans = false;
+
   /// Why nothing can be fitted; empty if all is well.
   std::string Refusal;
 
@@ -74,6 +77,7 @@ public:
   SpacePoints Normals;              ///< unit length, or 0 where there is none
   std::vector<double> Weights;      ///< empty: 1
   std::vector<double> LocalFairing; ///< empty: 1
+  std::vector<double> Feathering;   ///< factors that Weights have; empty: not feathered
   SpacePoints ExtraPositions;
   std::vector<double> ExtraValues;
 
@@ -127,6 +131,7 @@ private:
   struct Found;
 
   Found takePoints(vtkDataArray* normals, vtkDataArray* weights, vtkDataArray* fairing);
+  void feather();
   void gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraRows);
 };
 

@@ -18,14 +18,20 @@ struct PointTree::Search
   const Position& X;
   std::size_t Count;
   std::vector<Neighbour>& Found; ///< sorted
+  double Reach2;
 
   bool wants(double distance2) const
   {
-    return this->Found.size() < this->Count || distance2 <= this->Found.back().Distance2;
+    return distance2 <=
+      (this->Found.size() < this->Count ? this->Reach2 : this->Found.back().Distance2);
   }
 
   void offer(const Neighbour& next)
   {
+    if (!this->wants(next.Distance2))
+    {
+      return;
+    }
     if (this->Found.size() == this->Count)
     {
       if (!(next < this->Found.back()))
@@ -132,10 +138,11 @@ void PointTree::descend(Search& search, std::size_t node, std::size_t begin, std
   }
 }
 
-void PointTree::nearest(const Position& x, std::size_t count, std::vector<Neighbour>& found) const
+void PointTree::nearest(
+  const Position& x, std::size_t count, std::vector<Neighbour>& found, double reach) const
 {
   found.clear();
-  Search search{ x, std::min(count, this->Entries.size()), found };
+  Search search{ x, std::min(count, this->Entries.size()), found, reach * reach };
   if (search.Count > 0)
   {
     this->descend(search, 0, 0, this->Entries.size(), { 0, 0, 0 }, 0);

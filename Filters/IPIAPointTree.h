@@ -39,8 +39,10 @@ public:
 
   explicit PointTree(const SpacePoints& points);
 
-  /// The @a count nearest points, or all if there are fewer, nearest first.
-  void nearest(const Position& x, std::size_t count, std::vector<Neighbour>& found) const;
+  /// The @a count nearest points, or all if there are fewer, nearest first; none farther than
+  /// @a reach.
+  void nearest(const Position& x, std::size_t count, std::vector<Neighbour>& found,
+    double reach = VTK_DOUBLE_MAX) const;
 
 private:
   struct Entry

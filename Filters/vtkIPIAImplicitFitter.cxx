@@ -135,6 +135,7 @@ vtkIPIAImplicitFitter::vtkIPIAImplicitFitter()
   , StoppingRule(RelativeResidual)
   , StepSize(0)
   , UseNormalLengths(false)
+  , FeatherScans(true)
   , GenerateGradient(false)
   , GenerateSupport(false)
   , OutputScalarType(VTK_FLOAT)
@@ -265,6 +266,11 @@ void vtkIPIAImplicitFitter::BringInputUpToDate(vtkInformation* outInfo)
   }
 }
 
+bool vtkIPIAImplicitFitter::IsToFeather() const
+{
+  return this->FeatherScans && !this->Incremental && !this->Parameters().isClassic();
+}
+
 void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
 {
   vtkDataObject* points = vtkDataObject::GetData(input[0]);
@@ -278,6 +284,7 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
   }
   this->State->Current = std::make_unique<ipia::FitProblem>();
   this->State->Current->Cloud.UseNormalLengths = this->UseNormalLengths;
+  this->State->Current->Cloud.FeatherScans = this->IsToFeather();
   const auto nameOf = [this](int index)
   {
     const char* name = this->GetInputArrayInformation(index)->Get(vtkDataObject::FIELD_NAME());
@@ -473,7 +480,7 @@ bool vtkIPIAImplicitFitter::Fit()
   for (int value : { this->NormalConstraint, this->BasisType, this->OscillationStep,
          this->FairingOrder, this->Solver, this->NumberOfLevels, this->MaximumNumberOfIterations,
          this->StoppingRule, static_cast<int>(this->GenerateSupport), problem.FlatAxis,
-         static_cast<int>(this->UseNormalLengths),
+         static_cast<int>(this->UseNormalLengths), static_cast<int>(this->IsToFeather()),
          static_cast<int>(problem.staysInBricks(this->Parameters())) })
   {
     parameters.push_back(value);
@@ -782,6 +789,7 @@ void vtkIPIAImplicitFitter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StoppingRule: " << this->StoppingRule << "\n";
   os << indent << "StepSize: " << this->StepSize << "\n";
   os << indent << "UseNormalLengths: " << this->UseNormalLengths << "\n";
+  os << indent << "FeatherScans: " << this->FeatherScans << "\n";
   os << indent << "GenerateGradient: " << this->GenerateGradient << "\n";
   os << indent << "GenerateSupport: " << this->GenerateSupport << "\n";
   os << indent << "OutputScalarType: " << this->OutputScalarType << "\n";

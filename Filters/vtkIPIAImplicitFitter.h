@@ -102,6 +102,20 @@
  * weight
  * 1. SetInputArrayToProcess 2 (port 1): the values (default: the active point scalars).
  *
+ * ### Overlapping scans
+ * Range scanners err most where a scan ends: at silhouettes and grazing angles the beam meets the
+ * surface only in part, and so do the neighbours that normals are estimated from. As in merging of
+ * range images (Turk, Levoy 1994; Curless, Levoy 1996) the points of a composite input, whose
+ * blocks are scans, are feathered (FeatherScans). s_k is the shift of the mean of the 32 nearest
+ * points of its scan from point k over the distance of the farthest of them: about 0 within the
+ * scan and 0.4 and more at its border. Its confidence is
+ *
+ *     c_k = 0.05 + 0.95 exp(-(s_k / 0.1)^2),
+ *
+ * and its weight is multiplied by min(c_k / c, 1), at least 0.05, where c is the largest confidence
+ * of the points of other scans that cover it: the nearest of each within two spacings of its own
+ * scan whose normal is within 60 degrees of its own. What only one scan has seen counts fully.
+ *
  * ### Adding points
  * With Incremental, points that are appended to the input, or blocks to a composite one, are added
  * to the last fit: the coefficients near them are solved for, from their last values, the others
@@ -125,14 +139,14 @@
  * arrays of the input; the results below as field data. Origin and last point are the ends of the
  * domain. Any sub-extent can be asked for. Port 1: the points that were fitted, with all their
  * arrays, `Residual` (f), `Distance` (f / |grad f|), `NormalAgreement` (n . grad f / |grad f|,
- * negative where the normal points against f, 0 where there is none) and `Outlier` (1 where the
- * point was left out as one, else 0). Port 2: the control lattice,
- * a vtkImageData with point array `Coefficient`, with UniformRational also `Weight`, origin lo - h,
- * spacing h and dimensions N, on domain [lo, hi], and the far field as field data: `FarField`, one
- * signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1) (2 (N_z - 3) + 1) boxes (no third
- * factor in 2-D), x fastest, -1 or 1 where f is that sign times `FarFieldMagnitude` (one double), 0
- * where the spline counts. vtkIPIAImplicitFunction takes it; vtkImageBSplineInterpolator of degree
- * 3 interpolates a spline without weights.
+ * negative where the normal points against f, 0 where there is none), `Outlier` (1 where the point
+ * was left out as one, else 0) and, of overlapping scans, `Feathering` (the factor of its weight).
+ * Port 2: the control lattice, a vtkImageData with point array `Coefficient`, with UniformRational
+ * also `Weight`, origin lo - h, spacing h and dimensions N, on domain [lo, hi], and the far field as
+ * field data: `FarField`, one signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1)
+ * (2 (N_z - 3) + 1) boxes (no third factor in 2-D), x fastest, -1 or 1 where f is that sign times
+ * `FarFieldMagnitude` (one double), 0 where the spline counts. vtkIPIAImplicitFunction takes it;
+ * vtkImageBSplineInterpolator of degree 3 interpolates a spline without weights.
  *
  * ### Two dimensions
  * If all points lie in a plane and their normals in that plane, f is a bicubic spline in that plane
@@ -492,6 +506,17 @@ public:
 
   ///@{
   /**
+   * The blocks of a composite input are scans, whose borders are less certain than their middles:
+   * points near the border of their own scan count less where another scan has seen the same place
+   * better. See "Overlapping scans" above; of the hierarchy, not with Incremental. Default on.
+   */
+  vtkSetMacro(FeatherScans, bool);
+  vtkGetMacro(FeatherScans, bool);
+  vtkBooleanMacro(FeatherScans, bool);
+  ///@}
+
+  ///@{
+  /**
    * Add the exact gradient of f to output 0 as `Gradient`. Default off.
    */
   vtkSetMacro(GenerateGradient, bool);
@@ -630,6 +655,7 @@ protected:
   int StoppingRule;
   double StepSize;
   bool UseNormalLengths;
+  bool FeatherScans;
   bool GenerateGradient;
   bool GenerateSupport;
   int OutputScalarType;
@@ -676,6 +702,7 @@ private:
 
   ipia::FitParameters Parameters() const;
 
+  bool IsToFeather() const;
   void PrepareProblem(vtkInformationVector** input);
   bool Fit();
   template <int Dim>

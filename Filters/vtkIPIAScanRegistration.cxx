@@ -163,6 +163,7 @@ bool vtkIPIAScanRegistration::Register(ipia::ScanPoses& scans)
   scans.findExtent();
   vtkNew<vtkIPIAImplicitFitter> fitter;
   fitter->SetFitPointArrays(false);
+  fitter->SetFeatherScans(false); // all that overlaps tells how scans lie
   for (unsigned long event :
     { vtkCommand::ErrorEvent, vtkCommand::WarningEvent, vtkCommand::ProgressEvent })
   {

@@ -2,6 +2,7 @@
 #include "IPIAGather.h"
 
 #include "vtkAppendPolyData.h"
+#include "vtkCommunicator.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
@@ -277,7 +278,22 @@ bool requestOwnParts(vtkInformationVector** input, int numberOfPorts)
 
 Gathered gatherPoints(vtkMultiProcessController* controller, vtkDataObject* part)
 {
-  return gather(controller, part, appendPoints);
+  Gathered gathered = gather(controller, part, appendPoints);
+  const int isOfBlocks = vtkCompositeDataSet::SafeDownCast(part) ? 1 : 0;
+  int anyOfBlocks = 0;
+  controller->Reduce(&isOfBlocks, &anyOfBlocks, 1, vtkCommunicator::MAX_OP, 0);
+  auto* pieces = vtkMultiBlockDataSet::SafeDownCast(gathered.Data);
+  if (pieces && !anyOfBlocks)
+  {
+    vtkNew<vtkAppendPolyData> append;
+    for (unsigned int i = 0; i < pieces->GetNumberOfBlocks(); ++i)
+    {
+      append->AddInputData(blockOf(pieces, i));
+    }
+    append->Update();
+    gathered.Data = append->GetOutput();
+  }
+  return gathered;
 }
 
 GatheredShape gatherShape(vtkMultiProcessController* controller, vtkDataObject* part)

@@ -32,9 +32,9 @@ bool requestOwnParts(vtkInformationVector** input, int numberOfPorts);
 /// What one rank has gathered.
 struct Gathered
 {
-  /// On the first rank the points of all: a vtkPolyData if only one data set has any, otherwise a
-  /// vtkMultiBlockDataSet of those that have, in the order of the ranks. On the others, and where
-  /// no rank has data, nullptr.
+  /// On the first rank the points of all: a vtkPolyData if only one data set has any or all are
+  /// pieces of one, otherwise a vtkMultiBlockDataSet of those that have, in the order of the ranks.
+  /// On the others, and where no rank has data, nullptr.
   vtkSmartPointer<vtkDataObject> Data;
   /// On the first rank: how many ranks had points.
   int RanksWithPoints = 0;

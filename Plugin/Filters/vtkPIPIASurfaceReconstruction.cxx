@@ -134,6 +134,11 @@ void vtkPIPIASurfaceReconstruction::SetUseNormalLengths(bool value)
   this->GetFitter()->SetUseNormalLengths(value);
 }
 
+void vtkPIPIASurfaceReconstruction::SetFeatherScans(bool value)
+{
+  this->GetFitter()->SetFeatherScans(value);
+}
+
 void vtkPIPIASurfaceReconstruction::SetInputArrayToProcess(
   int index, int port, int connection, int association, const char* name)
 {

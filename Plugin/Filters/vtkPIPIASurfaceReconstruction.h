@@ -72,6 +72,7 @@ public:
   void SetStoppingRule(int value);
   void SetStepSize(double value);
   void SetUseNormalLengths(bool value);
+  void SetFeatherScans(bool value);
   ///@}
 
   /// The point array of the extra rows (port 1) with the values of f; "Active scalars" (the
