@@ -302,8 +302,10 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
   // Sizes say the spacing, all of them or, on an automatic domain, any.
   const bool anyGiven = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
   const bool allGiven = std::all_of(size.begin(), size.end(), [](auto n) { return n > 0; });
+  const bool sizesSay = allGiven || (automatic && anyGiven);
+  const bool chooseFairing = !parameters.isClassic() && parameters.FairingWeight < 0;
   double wanted = 0;
-  if (!(allGiven || (automatic && anyGiven)))
+  if (!sizesSay || chooseFairing)
   {
     Points<Dim> positions(Dim, this->Cloud.Positions.size());
     parallelChunks(positions.cols(), resolveThreads(0),
@@ -317,6 +319,7 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
       });
     wanted = parameters.isClassic() ? ClassicSpacing * pointSpacing(positions, box, 0)
                                     : HierarchicalSpacing * robustPointSpacing(positions, box, 0);
+    this->DataSpacing = chooseFairing ? wanted : 0;
   }
   const double h = std::min(std::max(wanted, longest / MostSpacings), longest / FewestSpacings);
 

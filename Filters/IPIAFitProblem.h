@@ -67,6 +67,7 @@ public:
   double Spacing[3] = { 1, 1, 1 };
   int GridSize[3] = { 1, 1, 1 };
   double SampleSpacing[3] = { 1, 1, 1 };
+  double DataSpacing = 0; ///< of the hierarchy: the knot spacing that suits the points
   int WholeExtent[6] = { 0, -1, 0, -1, 0, -1 };
 
   /// Derives all from the cloud and the arrays, which have been gathered.

@@ -262,6 +262,7 @@ void solveHierarchical(const Lattice<Dim>& lattice, const FitProblem& problem,
     options.FinestTolerance = parameters.Tolerance;
   }
   options.Rule = stoppingRule(parameters);
+  options.DataSpacing = problem.DataSpacing;
   if (parameters.FairingWeight >= 0)
   {
     const bool membrane = parameters.FairingOrder == 1;

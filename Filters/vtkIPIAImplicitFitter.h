@@ -142,9 +142,9 @@
  * negative where the normal points against f, 0 where there is none), `Outlier` (1 where the point
  * was left out as one, else 0) and, of overlapping scans, `Feathering` (the factor of its weight).
  * Port 2: the control lattice, a vtkImageData with point array `Coefficient`, with UniformRational
- * also `Weight`, origin lo - h, spacing h and dimensions N, on domain [lo, hi], and the far field as
- * field data: `FarField`, one signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1)
- * (2 (N_z - 3) + 1) boxes (no third factor in 2-D), x fastest, -1 or 1 where f is that sign times
+ * also `Weight`, origin lo - h, spacing h and dimensions N, on domain [lo, hi], and the far field
+ * as field data: `FarField`, one signed char for each of the (2 (N_x - 3) + 1) (2 (N_y - 3) + 1) (2
+ * (N_z - 3) + 1) boxes (no third factor in 2-D), x fastest, -1 or 1 where f is that sign times
  * `FarFieldMagnitude` (one double), 0 where the spline counts. vtkIPIAImplicitFunction takes it;
  * vtkImageBSplineInterpolator of degree 3 interpolates a spline without weights.
  *
@@ -392,7 +392,9 @@ public:
    * Weight tau of the fairing energy of levels finer than 32 cells, tau sum |D^r c|^2 over
    * differences of neighbouring coefficients, where the rows of an occupied cell weigh about 1 in
    * all: the energy tau h^(2 r - dimension) integral |D^r f|^2. 0: none; -1 (the default):
-   * automatic, 5e-5, and more on noisy data, by cross-validation. Less than 1e30.
+   * automatic, 5e-5, on levels finer than the automatic lattice of the points times the fourth
+   * power of the ratio of their spacings (up to 4), and more on noisy data, by cross-validation.
+   * Less than 1e30.
    */
   vtkSetClampMacro(FairingWeight, double, -1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(FairingWeight, double);

@@ -24,6 +24,8 @@ constexpr std::size_t LeastRowsForThreads = 1 << 16;
 /// The scale of residuals is at least this many knot spacings.
 constexpr double LeastScale = 0.1;
 /// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
+/// Where bands are finer than the points their fairing grows up to this ratio of the spacings.
+constexpr double MostFinerThanData = 4;
 constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
 }
 
@@ -527,11 +529,14 @@ LevelReport solveRows(const Level<Dim>& level, BrickLattice<Dim>& bricks,
   {
     bricks.coefficients() = *task.Start;
   }
+  const double finer =
+    std::clamp(options.DataSpacing / level.Grid.Spacing.mean(), 1.0, MostFinerThanData);
+  const double thinPlate =
+    level.Dense ? options.DenseThinPlate : options.BandThinPlate * std::pow(finer, 4);
   FairingWeights fairing;
   fairing.Membrane = static_cast<float>(level.Dense ? options.DenseMembrane : options.BandMembrane);
   fairing.ThinPlate =
-    static_cast<float>(std::max(level.Dense ? options.DenseThinPlate : options.BandThinPlate,
-      SmoothingThinPlate * relative * relative * relative));
+    static_cast<float>(std::max(thinPlate, SmoothingThinPlate * relative * relative * relative));
   const BrickOperator<Dim> system(bricks, rows, fairing, threads);
 
   report.Spacing = level.Grid.Spacing.maxCoeff();

@@ -29,6 +29,9 @@ struct HierarchicalOptions
   double DenseThinPlate = 1e-3; ///< tau_2 of the dense levels
   double BandMembrane = 0;      ///< tau_1 of the others
   double BandThinPlate = 5e-5;  ///< tau_2 of the others
+  /// The knot spacing that suits the density of the points, in their units: tau_2 of bands grows by
+  /// the fourth power of this over their spacing, while it is 1 to 4. 0: it does not.
+  double DataSpacing = 0;
   int DenseIterations = 20;
   double DenseTolerance = 1e-5;
   int BandIterations = 12;

@@ -50,10 +50,11 @@ bool isSameMethod(const HierarchicalOptions& a, const HierarchicalOptions& b)
   const auto valuesOf = [](const HierarchicalOptions& options)
   {
     const auto& [numberOfLevels, denseCells, denseGradient, bandGradient, finestGradient,
-      denseMembrane, denseThinPlate, bandMembrane, bandThinPlate, denseIterations, denseTolerance,
-      bandIterations, finestIterations, bandTolerance, finestTolerance, rule, robustFactor,
-      smoothingLength, threads] = options;
-    static_cast<void>(threads); // make no difference
+      denseMembrane, denseThinPlate, bandMembrane, bandThinPlate, dataSpacing, denseIterations,
+      denseTolerance, bandIterations, finestIterations, bandTolerance, finestTolerance, rule,
+      robustFactor, smoothingLength, threads] = options;
+    static_cast<void>(dataSpacing); // stays that of the last fit
+    static_cast<void>(threads);     // makes no difference
     return std::make_tuple(numberOfLevels, denseCells, denseGradient, bandGradient, finestGradient,
       denseMembrane, denseThinPlate, bandMembrane, bandThinPlate, denseIterations, denseTolerance,
       bandIterations, finestIterations, bandTolerance, finestTolerance, rule, robustFactor,
@@ -448,10 +449,12 @@ HierarchicalResult<Dim> IncrementalFit<Dim>::fit(const Lattice<Dim>& lattice,
   HermiteInput<Dim> input, const HierarchicalOptions& options, const ProgressCallback& progress)
 {
   HierarchicalResult<Dim> result;
+  double dataSpacing = this->Options.DataSpacing;
   if (!this->canAdd(lattice, input, options) ||
     !this->add(withoutFirst(input, this->Input.Positions.cols()), progress, result))
   {
     this->Last = {};
+    dataSpacing = options.DataSpacing;
     FittedData<Dim> fitted;
     result = fitHierarchical(lattice, input, options, progress, &fitted);
     this->Levels = std::move(fitted.Levels);
@@ -473,6 +476,7 @@ HierarchicalResult<Dim> IncrementalFit<Dim>::fit(const Lattice<Dim>& lattice,
   }
   this->Grid = lattice;
   this->Options = options;
+  this->Options.DataSpacing = dataSpacing;
   this->Input = std::move(input);
   this->Last = result;
   return result;

@@ -75,6 +75,32 @@ TYPED_TEST(HierarchicalFit, GivesTheSameBitsOnAnyNumberOfThreads)
   }
 }
 
+TYPED_TEST(HierarchicalFit, FairsBandsFinerThanTheDataMore)
+{
+  constexpr int Dim = TypeParam::value;
+  const Lattice<Dim> lattice = unitLattice<Dim>(64); // its only band
+  const auto input = sphereInput<Dim>(0.3, Dim == 2 ? 60 : 1500);
+  const auto fitted = [&](double dataSpacing, double factor)
+  {
+    HierarchicalOptions options;
+    options.SmoothingLength = 0;
+    options.DataSpacing = dataSpacing * lattice.Spacing[0];
+    options.BandThinPlate *= factor;
+    return fitHierarchical(lattice, input, options).Function->coefficients();
+  };
+  const Vector plain = fitted(0, 1);
+  for (const double spacing : { 0.5, 1.0 })
+  {
+    EXPECT_TRUE(test::sameBits(plain, fitted(spacing, 1))) << spacing;
+  }
+  EXPECT_TRUE(test::sameBits(fitted(0, 16), fitted(2, 1)));
+  EXPECT_FALSE(test::sameBits(plain, fitted(2, 1)));
+  for (const double spacing : { 4.0, 50.0 })
+  {
+    EXPECT_TRUE(test::sameBits(fitted(0, 256), fitted(spacing, 1))) << spacing;
+  }
+}
+
 TYPED_TEST(HierarchicalFit, SmoothsNoisyDataOnly)
 {
   constexpr int Dim = TypeParam::value;

@@ -429,7 +429,8 @@ TYPED_TEST(IncrementalFitOf, FitsAllAgainWhatIsNotAnAddition)
   constexpr int Dim = TypeParam::value;
   using Input = HermiteInput<Dim>;
   const Lattice<Dim> lattice = unitLattice<Dim>(40);
-  const HierarchicalOptions options;
+  HierarchicalOptions options;
+  options.DataSpacing = 0.04;
   Input base = sphereInput<Dim>(0.33, 3000);
   base.Weights = Vector::LinSpaced(3000, 0.5, 1);
   base.LocalFairing = Vector::LinSpaced(3000, 0.5, 2);
@@ -498,7 +499,10 @@ TYPED_TEST(IncrementalFitOf, FitsAllAgainWhatIsNotAnAddition)
   }
   IncrementalFit<Dim> incremental;
   incremental.fit(lattice, base, options);
-  EXPECT_EQ(incremental.fit(lattice, more, options).NumberOfPointsAdded, 1);
+  // Points that are added make the spacing that suits them smaller: that of the last fit stays.
+  HierarchicalOptions denser = options;
+  denser.DataSpacing = 0.9 * options.DataSpacing;
+  EXPECT_EQ(incremental.fit(lattice, more, denser).NumberOfPointsAdded, 1);
 }
 
 TYPED_TEST(IncrementalFitOf, StartsAgainAfterAnAbort)

@@ -7,6 +7,8 @@
 #include "IPIATestUtilities.h"
 
 #include "vtkIPIAImplicitFunction.h"
+#include "vtkSphereSource.h"
+#include "vtkTriangle.h"
 #include "vtkXMLImageDataReader.h"
 #include "vtkXMLImageDataWriter.h"
 
@@ -275,6 +277,75 @@ void TestAutomaticFairing(Checks& checks)
   }
 }
 
+/// Points at random on the faces of a sphere of triangles, with their normals.
+ipiatest::OrientedPoints FacetedSphere(int seed, int n)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(16);
+  sphere->SetPhiResolution(12);
+  sphere->Update();
+  vtkNew<vtkMinimalStandardRandomSequence> random;
+  random->SetSeed(seed);
+  const auto next = [&random]()
+  {
+    random->Next();
+    return random->GetValue();
+  };
+  ipiatest::OrientedPoints points;
+  for (int k = 0; k < n; ++k)
+  {
+    vtkPoints* corners =
+      sphere->GetOutput()->GetCell(k % sphere->GetOutput()->GetNumberOfCells())->GetPoints();
+    double u = next(), v = next();
+    if (u + v > 1)
+    {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    double c[3][3], normal[3];
+    for (vtkIdType i = 0; i < 3; ++i)
+    {
+      corners->GetPoint(i, c[i]);
+    }
+    vtkTriangle::ComputeNormal(c[0], c[1], c[2], normal);
+    ipiatest::Vector3 x{};
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+      x[i] = (1 - u - v) * c[0][i] + u * c[1][i] + v * c[2][i];
+    }
+    points.Add(x, { normal[0], normal[1], normal[2] });
+  }
+  return points;
+}
+
+/// A lattice that is finer than the points is no less accurate, as its fairing is stronger.
+void TestLatticesFinerThanThePoints(Checks& checks)
+{
+  auto cloud = ipiatest::ToPolyData(FacetedSphere(1, 6000));
+  const ipiatest::OrientedPoints truth = FacetedSphere(2, 5000);
+  const auto errorOf = [&](int cells, double fairingWeight)
+  {
+    auto fitter = NewFitter(Method::Default, cloud);
+    fitter->SetGridSize(cells > 0 ? cells + 3 : 0, 0, 0);
+    fitter->SetFairingWeight(fairingWeight);
+    fitter->Update();
+    double sum = 0;
+    for (ipiatest::Vector3 x : truth.Positions)
+    {
+      sum += std::abs(fitter->GetImplicitFunction()->EvaluateFunction(x.data()));
+    }
+    return sum / 5000;
+  };
+  const double automatic = errorOf(0, -1);
+  for (int cells : { 128, 256 })
+  {
+    const double finer = errorOf(cells, -1), unscaled = errorOf(cells, 5e-5);
+    checks.AtMost(finer, automatic, Text("mean error on ", cells, " cells"));
+    checks.That(finer < 0.9 * unscaled,
+      Text("mean error on ", cells, " cells, less than unscaled: ", finer, ", ", unscaled));
+  }
+}
+
 /// Nothing else smooths levels of up to 32 cells.
 void TestFairingOfCoarseLevels(Checks& checks)
 {
@@ -461,6 +532,7 @@ int TestImplicitFitterHierarchyParameters(int, char*[])
   TestTolerance(checks);
   TestFairing(checks);
   TestAutomaticFairing(checks);
+  TestLatticesFinerThanThePoints(checks);
   TestFairingOfCoarseLevels(checks);
   TestWeights(checks);
   TestScaledWeights(checks);
