@@ -303,7 +303,7 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
   const bool anyGiven = std::any_of(size.begin(), size.end(), [](auto n) { return n > 0; });
   const bool allGiven = std::all_of(size.begin(), size.end(), [](auto n) { return n > 0; });
   const bool sizesSay = allGiven || (automatic && anyGiven);
-  const bool chooseFairing = !parameters.isClassic() && parameters.FairingWeight < 0;
+  const bool chooseFairing = anyGiven && !parameters.isClassic() && parameters.FairingWeight < 0;
   double wanted = 0;
   if (!sizesSay || chooseFairing)
   {
@@ -319,7 +319,8 @@ void FitProblem::ChooseLattice(const FitParameters& parameters)
       });
     wanted = parameters.isClassic() ? ClassicSpacing * pointSpacing(positions, box, 0)
                                     : HierarchicalSpacing * robustPointSpacing(positions, box, 0);
-    this->DataSpacing = chooseFairing ? wanted : 0;
+    // An automatic lattice suits the points.
+    this->DataSpacing = chooseFairing ? std::min(wanted, longest / FewestSpacings) : 0;
   }
   const double h = std::min(std::max(wanted, longest / MostSpacings), longest / FewestSpacings);
 

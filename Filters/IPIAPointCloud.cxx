@@ -3,7 +3,6 @@
 
 #include "Core/Parallel.h"
 #include "IPIARowWeights.h"
-#include "IPIAScanFeathering.h"
 #include "IPIAText.h"
 
 #include "vtkAlgorithm.h"
@@ -228,10 +227,6 @@ void PointCloud::gather(const ArrayChooser& choose, const ArrayNamer& nameOf, vt
   {
     found.AnyWeight = weighByLength(normals, this->Ids.data(), this->Ids.size(), this->Weights);
   }
-  if (this->FeatherScans)
-  {
-    this->feather();
-  }
   if (this->Ids.empty())
   {
     this->Refusal =
@@ -335,17 +330,13 @@ PointCloud::Found PointCloud::takePoints(
   return found;
 }
 
-void PointCloud::feather()
+void PointCloud::feather(const std::vector<double>& factors)
 {
-  this->Feathering = featherFactors(*this);
-  if (this->Weights.empty())
+  this->Feathering = factors;
+  this->Weights.resize(this->Weights.empty() ? factors.size() : this->Weights.size(), 1.0);
+  for (std::size_t k = 0; k < factors.size(); ++k)
   {
-    this->Weights = this->Feathering;
-    return;
-  }
-  for (std::size_t k = 0; k < this->Feathering.size(); ++k)
-  {
-    this->Weights[k] *= this->Feathering[k];
+    this->Weights[k] *= factors[k];
   }
 }
 

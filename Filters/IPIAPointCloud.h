@@ -59,9 +59,6 @@ public:
   /// Whether the lengths of normals count as weights, on gather().
   bool UseNormalLengths = false;
 
-  /// Whether blocks are scans whose borders count less, on gather().
-  bool FeatherScans = false;
-
   /// Why nothing can be fitted; empty if all is well.
   std::string Refusal;
 
@@ -124,6 +121,9 @@ public:
    */
   std::vector<double> offsetDistances(double distance, double side) const;
 
+  /// Multiplies the weights of all points by factors, if there are any.
+  void feather(const std::vector<double>& factors);
+
   /// Leaves out the other points, with all that belongs to them.
   void keepIf(const std::function<bool(std::size_t)>& stays);
 
@@ -131,7 +131,6 @@ private:
   struct Found;
 
   Found takePoints(vtkDataArray* normals, vtkDataArray* weights, vtkDataArray* fairing);
-  void feather();
   void gatherExtraRows(const ArrayChooser& choose, vtkPolyData* extraRows);
 };
 

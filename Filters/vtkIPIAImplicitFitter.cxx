@@ -7,6 +7,7 @@
 #include "IPIAFitSolution.h"
 #include "IPIAIdentity.h"
 #include "IPIAProgress.h"
+#include "IPIAScanFeathering.h"
 #include "IPIAText.h"
 #include "vtkIPIAImplicitFunction.h"
 
@@ -49,6 +50,8 @@ public:
 
   std::unique_ptr<ipia::FitProblem> Current;
   std::vector<vtkMTimeType> ProblemIdentity;
+  std::vector<double> Feathering; ///< of the last scans that were feathered
+  std::vector<vtkMTimeType> FeatheringIdentity;
 
   std::unique_ptr<ipia::FitSolution<2>> Planar;
   std::unique_ptr<ipia::FitSolution<3>> Spatial;
@@ -266,9 +269,26 @@ void vtkIPIAImplicitFitter::BringInputUpToDate(vtkInformation* outInfo)
   }
 }
 
-bool vtkIPIAImplicitFitter::IsToFeather() const
+void vtkIPIAImplicitFitter::FeatherScansOf(ipia::PointCloud& cloud, ipia::Identity identity)
 {
-  return this->FeatherScans && !this->Incremental && !this->Parameters().isClassic();
+  if (!this->FeatherScans || this->Incremental || this->Parameters().isClassic() ||
+    !cloud.Refusal.empty() || cloud.Blocks.size() < 2)
+  {
+    return;
+  }
+  Internals& state = *this->State;
+  identity[0] = this->UseNormalLengths; // of all parameters these change the factors
+  identity[1] = 0;
+  for (vtkDataArray* array : cloud.ChosenArrays)
+  {
+    ipia::appendArrayIdentity(array, identity);
+  }
+  if (identity != state.FeatheringIdentity)
+  {
+    state.Feathering = ipia::featherFactors(cloud);
+    state.FeatheringIdentity = identity;
+  }
+  cloud.feather(state.Feathering);
 }
 
 void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
@@ -284,7 +304,6 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
   }
   this->State->Current = std::make_unique<ipia::FitProblem>();
   this->State->Current->Cloud.UseNormalLengths = this->UseNormalLengths;
-  this->State->Current->Cloud.FeatherScans = this->IsToFeather();
   const auto nameOf = [this](int index)
   {
     const char* name = this->GetInputArrayInformation(index)->Get(vtkDataObject::FIELD_NAME());
@@ -294,6 +313,7 @@ void vtkIPIAImplicitFitter::PrepareProblem(vtkInformationVector** input)
   this->State->Current->Cloud.gather([this](int index, vtkDataObject* data)
     { return this->GetInputArrayToProcess(index, data); },
     nameOf, points, extraRows);
+  this->FeatherScansOf(this->State->Current->Cloud, identity);
   if (this->FitPointArrays)
   {
     this->State->Current->Arrays =
@@ -477,11 +497,12 @@ bool vtkIPIAImplicitFitter::Fit()
   std::vector<double> parameters{ this->OffsetDistance, this->OffsetValue,
     this->InwardOffsetDistance, this->InwardOffsetValue, this->WeightStepSize,
     this->OscillationWeight, this->FairingWeight, this->Tolerance, this->StepSize };
-  for (int value : { this->NormalConstraint, this->BasisType, this->OscillationStep,
-         this->FairingOrder, this->Solver, this->NumberOfLevels, this->MaximumNumberOfIterations,
-         this->StoppingRule, static_cast<int>(this->GenerateSupport), problem.FlatAxis,
-         static_cast<int>(this->UseNormalLengths), static_cast<int>(this->IsToFeather()),
-         static_cast<int>(problem.staysInBricks(this->Parameters())) })
+  for (int value :
+    { this->NormalConstraint, this->BasisType, this->OscillationStep, this->FairingOrder,
+      this->Solver, this->NumberOfLevels, this->MaximumNumberOfIterations, this->StoppingRule,
+      static_cast<int>(this->GenerateSupport), problem.FlatAxis,
+      static_cast<int>(this->UseNormalLengths), static_cast<int>(!problem.Cloud.Feathering.empty()),
+      static_cast<int>(problem.staysInBricks(this->Parameters())) })
   {
     parameters.push_back(value);
   }
@@ -545,7 +566,9 @@ bool vtkIPIAImplicitFitter::FitAttributes()
 {
   Internals& state = *this->State;
   ipia::Identity identity = state.ProblemIdentity;
-  identity[0] = identity[1] = 0; // parameters, and what is wanted of the fit
+  // Of all parameters and what is wanted of the fit these change the weights.
+  identity[0] = this->UseNormalLengths;
+  identity[1] = !state.Current->Cloud.Feathering.empty();
   for (vtkDataArray* array : state.Current->Cloud.ChosenArrays)
   {
     ipia::appendArrayIdentity(array, identity);

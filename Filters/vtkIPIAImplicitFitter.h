@@ -106,15 +106,17 @@
  * Range scanners err most where a scan ends: at silhouettes and grazing angles the beam meets the
  * surface only in part, and so do the neighbours that normals are estimated from. As in merging of
  * range images (Turk, Levoy 1994; Curless, Levoy 1996) the points of a composite input, whose
- * blocks are scans, are feathered (FeatherScans). s_k is the shift of the mean of the 32 nearest
- * points of its scan from point k over the distance of the farthest of them: about 0 within the
- * scan and 0.4 and more at its border. Its confidence is
+ * blocks are scans, are feathered (FeatherScans). s_k is the distance of point k from the mean of
+ * itself and the 32 nearest points of its scan, over the distance of the farthest of them: about 0
+ * within the scan and 0.4 and more at its border. Its confidence is
  *
  *     c_k = 0.05 + 0.95 exp(-(s_k / 0.1)^2),
  *
  * and its weight is multiplied by min(c_k / c, 1), at least 0.05, where c is the largest confidence
- * of the points of other scans that cover it: the nearest of each within two spacings of its own
- * scan whose normal is within 60 degrees of its own. What only one scan has seen counts fully.
+ * of the points of other scans that cover it: the nearest of each, if it is within two spacings and
+ * the normals within 60 degrees. The spacing of a scan is the median distance of the fourth
+ * neighbours of its points; that of the two scans which is wider counts. What only one scan has
+ * seen counts fully.
  *
  * ### Adding points
  * With Incremental, points that are appended to the input, or blocks to a composite one, are added
@@ -129,7 +131,8 @@
  * for bit; with offset rows; where extra rows have changed. The smoothing length stays that of the
  * last fit; where it is not 0, or points were too sparse to tell, all is fitted again once there
  * are twice as many points, and where it is 0, once added points are noisy. So it is where added
- * points have outliers or flipped normals. In the plane as in space.
+ * points have outliers or flipped normals, and where they are so much denser that a lattice finer
+ * than the points would be faired as for half as much again. In the plane as in space.
  *
  * After an addition Energy, NumberOfIterationsUsed and ResidualHistory are of the rows near the
  * added points, and NoiseFound is made of the last one and that of the added points.
@@ -704,7 +707,7 @@ private:
 
   ipia::FitParameters Parameters() const;
 
-  bool IsToFeather() const;
+  void FeatherScansOf(ipia::PointCloud& cloud, std::vector<vtkMTimeType> identity);
   void PrepareProblem(vtkInformationVector** input);
   bool Fit();
   template <int Dim>

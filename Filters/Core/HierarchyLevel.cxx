@@ -23,9 +23,9 @@ constexpr double UnitDensity = 151. / 315;
 constexpr std::size_t LeastRowsForThreads = 1 << 16;
 /// The scale of residuals is at least this many knot spacings.
 constexpr double LeastScale = 0.1;
-/// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
 /// Where bands are finer than the points their fairing grows up to this ratio of the spacings.
 constexpr double MostFinerThanData = 4;
+/// Effect of a smoothing length of n knot spacings: tau_2 >= 0.02 n^3, g >= n up to a limit.
 constexpr double SmoothingThinPlate = 0.02, MostSmoothingGradient = 20;
 }
 

@@ -15,6 +15,8 @@ namespace
 {
 /// A smoothing length is found anew when there are so many times the points.
 constexpr std::int64_t GrowthOfPoints = 2;
+/// All is fitted again when the fairing of bands would be that of so many times the spacing.
+constexpr double ChangeOfSpacing = 1.5;
 /// BrickWidth as a power of two.
 constexpr int BrickBits = 2;
 
@@ -441,7 +443,12 @@ bool IncrementalFit<Dim>::canAdd(const Lattice<Dim>& lattice, const HermiteInput
   const bool noiseIsKnown = this->Last.SmoothingLength == 0 && this->Last.DeterminedLevels > 0;
   const bool lengthIsOld = options.SmoothingLength < 0 && !noiseIsKnown &&
     input.Positions.cols() >= GrowthOfPoints * this->PointsOfLength;
-  return kept && !lengthIsOld;
+  // Of the spacings that suit the points those count that are wider than the lattice's.
+  const auto widest = [&](const HierarchicalOptions& of)
+  { return std::max(of.DataSpacing, lattice.Spacing.mean()); };
+  const bool fairingIsOld = widest(this->Options) > ChangeOfSpacing * widest(options) ||
+    widest(options) > ChangeOfSpacing * widest(this->Options);
+  return kept && !lengthIsOld && !fairingIsOld;
 }
 
 template <int Dim>
