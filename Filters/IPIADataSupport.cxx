@@ -102,6 +102,13 @@ std::vector<DataSupport::Reach> DataSupport::reach(const std::vector<Position>& 
   return reaches;
 }
 
+const DataSupport::Position& DataSupport::normalNear(const Position& x) const
+{
+  std::vector<PointTree::Neighbour> found;
+  this->Tree.nearest(x, 1, found);
+  return this->Normals[static_cast<std::size_t>(found.front().Id)];
+}
+
 void DataSupport::provideSpacings(const std::vector<vtkIdType>& points)
 {
   const std::vector<vtkIdType> wanted = takeUnknown(points, this->Spacing);

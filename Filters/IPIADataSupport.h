@@ -43,6 +43,9 @@ public:
   /// Of many positions at once, on OpenMP's threads.
   std::vector<Reach> reach(const std::vector<Position>& x);
 
+  /// The normal of the nearest point.
+  const Position& normalNear(const Position& x) const;
+
 private:
   void provideSpacings(const std::vector<vtkIdType>& points);
   double ownSpacing(vtkIdType point, std::vector<PointTree::Neighbour>& scratch) const;

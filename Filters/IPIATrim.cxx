@@ -29,6 +29,11 @@ using Position = DataSupport::Position;
 constexpr double OnSide = 0.5;
 /// Of an unsupported part, this share of the vertices or more is in cells far from all data.
 constexpr double FarShare = 0.25;
+/// Data around a hole face one way where the mean of their normals is at least this long.
+constexpr double LeastAgreementOfRim = 0.7;
+/// A part of a surface is hidden from where these data were seen if it faces that way with less
+/// than this share of its area.
+constexpr double MostHidden = 0.5;
 
 double distanceBetween(const Position& a, const Position& b)
 {
@@ -136,7 +141,7 @@ public:
   }
 
   /// Chooses among the connected unsupported parts. Returns how many are to be cut off.
-  int choose()
+  int choose(const DataSupport& support)
   {
     DisjointSets sets(static_cast<vtkIdType>(this->Distance.size()));
     forSimplices(this->Surface,
@@ -167,9 +172,12 @@ public:
                                        : supported) += share;
         }
       });
+    const std::unordered_map<vtkIdType, Facing> facings = this->facingsOf(part, support);
     for (const auto& [label, size] : sizes)
     {
-      cut[label] = size > this->Options.HoleSize * supported;
+      const auto facing = facings.find(label);
+      const bool isHidden = facing != facings.end() && facing->second.isHidden();
+      cut[label] = isHidden || size > this->Options.HoleSize * supported;
     }
     this->Cut.assign(this->Distance.size(), 0);
     for (std::size_t i = 0; i < this->Distance.size(); ++i)
@@ -287,6 +295,67 @@ private:
     return this->Unsupported[static_cast<std::size_t>(i)] != 0;
   }
 
+  /// Which ways an unsupported part and the data around it face.
+  struct Facing
+  {
+    Position Part{}; ///< sum of the areas with their normals
+    double Area = 0;
+    Position Rim{}; ///< sum of the normals of the data nearest to its border
+    double RimSize = 0;
+
+    /// Whether data that mostly face one way surround a part that does not.
+    bool isHidden() const
+    {
+      const double rim = vtkMath::Norm(this->Rim.data());
+      return rim > LeastAgreementOfRim * this->RimSize &&
+        vtkMath::Dot(this->Part.data(), this->Rim.data()) < MostHidden * this->Area * rim;
+    }
+  };
+
+  /// Of every unsupported part of triangles.
+  std::unordered_map<vtkIdType, Facing> facingsOf(
+    const std::vector<vtkIdType>& part, const DataSupport& support) const
+  {
+    std::unordered_map<vtkIdType, Facing> facings;
+    std::vector<std::pair<vtkIdType, vtkIdType>> rim; // parts and vertices beside them
+    forCells(this->Surface->GetPolys(),
+      [&](vtkIdType n, const vtkIdType* ids)
+      {
+        const Position corners[3] = { this->at(ids[0]), this->at(ids[1]), this->at(ids[2]) };
+        Position area;
+        vtkTriangle::ComputeNormalDirection(
+          corners[0].data(), corners[1].data(), corners[2].data(), area.data());
+        for (vtkIdType k = 0; k < n; ++k)
+        {
+          if (!this->isUnsupported(ids[k]))
+          {
+            continue;
+          }
+          const vtkIdType label = part[static_cast<std::size_t>(ids[k])];
+          Facing& facing = facings[label];
+          vtkMath::Add(facing.Part.data(), area.data(), facing.Part.data());
+          facing.Area += vtkMath::Norm(area.data());
+          for (vtkIdType other = 0; other < n; ++other)
+          {
+            if (!this->isUnsupported(ids[other]))
+            {
+              rim.emplace_back(label, ids[other]);
+            }
+          }
+        }
+      });
+    std::sort(rim.begin(), rim.end());
+    rim.erase(std::unique(rim.begin(), rim.end()), rim.end());
+    for (const auto& [label, vertex] : rim)
+    {
+      Facing& facing = facings[label];
+      const Position& normal = support.normalNear(this->at(static_cast<std::size_t>(vertex)));
+      vtkMath::Add(facing.Rim.data(), normal.data(), facing.Rim.data());
+      facing.RimSize += vtkMath::Norm(normal.data());
+    }
+    return facings;
+  }
+
   double sizeOf(vtkIdType n, const vtkIdType* ids) const
   {
     const Position a = positionOf(this->Surface, ids[0]), b = positionOf(this->Surface, ids[1]);
@@ -327,7 +396,7 @@ TrimResult trimUnsupported(vtkPolyData* surface, const PointCloud& data, const T
       *std::max_element(options.SampleSpacing.begin(), options.SampleSpacing.end());
     DataSupport support(data.Positions, data.Normals, flatAxis, least);
     trim.spread(std::move(seeds), support, neighbours);
-    result.Parts = trim.choose();
+    result.Parts = trim.choose(support);
     if (result.Parts == 0)
     {
       return result;

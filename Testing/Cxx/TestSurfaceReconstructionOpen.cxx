@@ -391,6 +391,54 @@ void TestHoleSize(Checks& checks)
   }
 }
 
+/// The ground around a house and its roof, seen from above, with a gap in the ground.
+OrientedPoints GroundAndRoof()
+{
+  OrientedPoints seen;
+  for (int i = 0; i < 60; ++i)
+  {
+    for (int j = 0; j < 60; ++j)
+    {
+      const bool isGap = i >= 5 && i < 14 && j >= 5 && j < 14;
+      const bool isRoof = i >= 22 && i < 42 && j >= 22 && j < 42;
+      if (!isGap)
+      {
+        seen.Add({ double(i), double(j), isRoof ? 10. : 0. }, { 0, 0, 1 });
+      }
+    }
+  }
+  return seen;
+}
+
+/// Walls that were not seen from above are cut out, whatever their size; a gap is a hole.
+void TestHiddenParts(Checks& checks)
+{
+  const OrientedPoints cloud = GroundAndRoof();
+  const auto verticesOfWalls = [](vtkPolyData* surface)
+  {
+    vtkIdType count = 0;
+    for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+    {
+      const double z = surface->GetPoint(i)[2];
+      count += z > 4 && z < 6 ? 1 : 0;
+    }
+    return count;
+  };
+  checks.That(
+    verticesOfWalls(Reconstruct(cloud, WithoutTrim)->GetOutput()) > 100, "walls untrimmed");
+  for (const double size : { 0.15, 10. })
+  {
+    auto reconstruction =
+      Reconstruct(cloud, [=](vtkIPIASurfaceReconstruction* r) { r->SetHoleSize(size); });
+    vtkPolyData* surface = reconstruction->GetOutput();
+    const std::string what = Text("roof, HoleSize ", size);
+    checks.Equal(verticesOfWalls(surface), vtkIdType{ 0 }, what + ": no walls");
+    checks.Equal(ipiatest::CountComponents(surface), 2, what + ": ground and roof");
+    checks.Equal(ipiatest::CountComponents(ipiatest::Edges(surface, true)), 3,
+      what + ": borders of the ground and of the roof, none of the gap");
+  }
+}
+
 /// A wide domain, in which the surface closes behind the data.
 void TestWideDomain(Checks& checks)
 {
@@ -612,6 +660,7 @@ int TestSurfaceReconstructionOpen(int, char*[])
   TestGyroid(checks);
   TestClosedSurfaces(checks);
   TestHoleSize(checks);
+  TestHiddenParts(checks);
   TestWideDomain(checks);
   TestTightDomain(checks);
   TestScanLines(checks);
