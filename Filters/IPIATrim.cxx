@@ -172,14 +172,10 @@ public:
                                        : supported) += share;
         }
       });
-    const std::unordered_map<vtkIdType, Facing> facings = this->facingsOf(part, support);
     for (const auto& [label, size] : sizes)
     {
-      const auto facing = facings.find(label);
-      const bool isHidden = facing != facings.end() && facing->second.isHidden();
-      cut[label] = isHidden || size > this->Options.HoleSize * supported;
+      cut[label] = size > this->Options.HoleSize * supported;
     }
-    this->Cut.assign(this->Distance.size(), 0);
     for (std::size_t i = 0; i < this->Distance.size(); ++i)
     {
       if (this->isUnsupported(i) && isOnSide(this->at(i), this->Options))
@@ -187,12 +183,21 @@ public:
         cut[part[i]] = true;
       }
     }
+    const auto isCut = [](const auto& entry) { return entry.second; };
+    if (std::any_of(cut.begin(), cut.end(), isCut))
+    {
+      // The data are open: a closed surface stays closed.
+      for (const auto& [label, facing] : this->facingsOf(part, support))
+      {
+        cut[label] = cut[label] || facing.isHidden();
+      }
+    }
+    this->Cut.assign(this->Distance.size(), 0);
     for (std::size_t i = 0; i < this->Distance.size(); ++i)
     {
       this->Cut[i] = this->isUnsupported(i) && cut[part[i]];
     }
-    return static_cast<int>(
-      std::count_if(cut.begin(), cut.end(), [](const auto& entry) { return entry.second; }));
+    return static_cast<int>(std::count_if(cut.begin(), cut.end(), isCut));
   }
 
   /// A function that is negative at what is to be cut off: the distance from where support ends,

@@ -36,22 +36,22 @@
  * third of six sectors of neighbours: uneven density does not count, nor the gaps between scan
  * lines up to about twenty times as dense along as across. Connected unsupported parts are cut off
  * if they reach a side of the domain (of an automatic one also where it is nearer than
- * TrimDistance), or if they are larger than HoleSize, or if they are hidden from where the data
- * were seen, such as walls between the roofs and the ground of a scan from the air; the others are
- * holes in the data and stay filled. A part is hidden if the data nearest to its border mostly face
- * one way (the mean of their normals is longer than 0.7) and it does not: its area that faces this
- * way is less than half of its area. The cut runs back towards the data to half a spacing from the
- * outermost ones, as if a ball were rolled along them, through triangles rather than along their
- * edges. New vertices lie on f = 0 and have exact normals; other point arrays are interpolated.
- * Curves are cut alike.
+ * TrimDistance), or if they are larger than HoleSize; the others are holes in the data and stay
+ * filled. If any is cut off, so are those that are hidden from where the data were seen, such as
+ * walls between the roofs and the ground of a scan from the air. A part is hidden if the data
+ * nearest to its border mostly face one way (the mean of their normals is longer than 0.7) and it
+ * does not: its area that faces this way is less than half of its area. The cut runs back towards
+ * the data to half a spacing from the outermost ones, as if a ball were rolled along them, through
+ * triangles rather than along their edges. New vertices lie on f = 0 and have exact normals; other
+ * point arrays are interpolated. Curves are cut alike, but for hidden parts.
  *
  * A hole whose filling reaches a side of the domain, such as one at the very top of a model, is cut
  * out; more Padding lets it close. An opening inside the domain smaller than HoleSize is taken for
  * a hole. Closed, evenly sampled surfaces are left as they are.
  *
  * Input ports and SetInputArrayToProcess are those of vtkIPIAImplicitFitter; its parameters are set
- * on GetFitter(). Refusals and warnings are the
- * fitter's, reported by this filter; the output is empty after a refusal or an abort.
+ * on GetFitter(). Refusals and warnings are the fitter's, reported by this filter; the output is
+ * empty after a refusal or an abort.
  *
  * @sa vtkIPIAImplicitFitter vtkIPIAImplicitFunction vtkIPIAScanRegistration vtkFlyingEdges3D
  * vtkSurfaceReconstructionFilter

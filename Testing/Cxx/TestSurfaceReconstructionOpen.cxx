@@ -410,6 +410,48 @@ OrientedPoints GroundAndRoof()
   return seen;
 }
 
+/// A block with a tower, whose walls have no points, with or without the bottom.
+OrientedPoints BlockWithTower(bool hasBottom)
+{
+  OrientedPoints seen;
+  const int size = 40, height = 12;
+  for (int i = 0; i <= size; ++i)
+  {
+    for (int j = 0; j <= size; ++j)
+    {
+      const bool isRoof = i >= 12 && i <= 28 && j >= 12 && j <= 28;
+      seen.Add({ double(i), double(j), isRoof ? 10. : 0. }, { 0, 0, 1 });
+      if (hasBottom)
+      {
+        seen.Add({ double(i), double(j), double(-height) }, { 0, 0, -1 });
+      }
+    }
+    for (int k = -height; k <= 0; ++k)
+    {
+      seen.Add({ 0., double(i), double(k) }, { -1, 0, 0 });
+      seen.Add({ double(size), double(i), double(k) }, { 1, 0, 0 });
+      seen.Add({ double(i), 0., double(k) }, { 0, -1, 0 });
+      seen.Add({ double(i), double(size), double(k) }, { 0, 1, 0 });
+    }
+  }
+  return seen;
+}
+
+/// Hidden walls of a model that is closed elsewhere stay, those of an open one go.
+void TestHiddenPartsOfModels(Checks& checks)
+{
+  for (const bool isClosed : { true, false })
+  {
+    auto reconstruction = Reconstruct(BlockWithTower(isClosed));
+    vtkPolyData* surface = reconstruction->GetOutput();
+    const std::string what = isClosed ? "closed block: " : "open block: ";
+    checks.Equal(ipiatest::CountComponents(surface), isClosed ? 1 : 2, what + "components");
+    // Of the bottom, of the block's top around the tower, and of the tower's roof.
+    checks.Equal(ipiatest::CountComponents(ipiatest::Edges(surface, true)), isClosed ? 0 : 3,
+      what + "borders");
+  }
+}
+
 /// Walls that were not seen from above are cut out, whatever their size; a gap is a hole.
 void TestHiddenParts(Checks& checks)
 {
@@ -661,6 +703,7 @@ int TestSurfaceReconstructionOpen(int, char*[])
   TestClosedSurfaces(checks);
   TestHoleSize(checks);
   TestHiddenParts(checks);
+  TestHiddenPartsOfModels(checks);
   TestWideDomain(checks);
   TestTightDomain(checks);
   TestScanLines(checks);
